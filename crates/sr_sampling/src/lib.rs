@@ -1,0 +1,18 @@
+//! Densities, and how to draw from them.
+//!
+//! An estimate of ∫ f(x) dx is the mean of f(X) / p(X), X drawn from p. Everything else is choosing p:
+//! [`Distribution`] is that choice, [`Measure`] says what p is a density of, [`Mixture`] and
+//! [`mis_estimate`] combine several. Nothing here knows rendering.
+
+pub mod distribution;
+pub mod measure;
+pub mod mis;
+pub mod mixture;
+pub mod sequence;
+pub mod warp;
+
+pub use distribution::{Distribution, Invert, PointOf, RealOf, Sample};
+pub use measure::{Area, Counting, Lebesgue, Line, Measure, Plane, Real, SolidAngle, to_solid_angle};
+pub use mis::{balance_weight, mis_estimate, power_weight};
+pub use mixture::{Mix2, Mixture, MixtureError};
+pub use sequence::{Cursor, SampleId, Sequence};

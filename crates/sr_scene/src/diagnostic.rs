@@ -1,0 +1,96 @@
+//! Diagnostics as data: what is wrong, where, a guess, and the consequence.
+
+use std::fmt;
+use std::ops::Range;
+
+/// A source text: a file, or a Python object's path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, PartialOrd, Ord)]
+pub struct SourceId(pub u32);
+
+/// A range of bytes in a source.
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
+pub struct Span {
+    /// The source.
+    pub source: SourceId,
+    /// The bytes.
+    pub bytes: Range<usize>,
+}
+
+/// How bad it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// The scene is rendered, but not quite as the file asks.
+    Warning,
+    /// There is no scene.
+    Error,
+}
+
+/// One thing to tell the user.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Diagnostic {
+    /// How bad.
+    pub severity: Severity,
+    /// A stable name, such as `mitsuba::unknown-property`.
+    pub code: &'static str,
+    /// One sentence.
+    pub message: String,
+    /// Where.
+    pub span: Span,
+    /// A guess, shown at the place: `did you mean "roughness"?`
+    pub hint: Option<String>,
+    /// What happens instead.
+    pub consequence: Option<String>,
+}
+
+/// The texts that spans point into.
+#[derive(Clone, Debug, Default)]
+pub struct Sources {
+    files: Vec<(String, String)>,
+}
+
+impl Sources {
+    /// Adds a text under a name.
+    pub fn add(&mut self, name: impl Into<String>, text: impl Into<String>) -> SourceId {
+        self.files.push((name.into(), text.into()));
+        SourceId(u32::try_from(self.files.len() - 1).expect("fewer than 2³² sources"))
+    }
+
+    /// The name and the text of a source; empty for one that is not known.
+    pub fn get(&self, id: SourceId) -> (&str, &str) {
+        self.files.get(id.0 as usize).map_or(("", ""), |(name, text)| (name, text))
+    }
+
+    /// One-based line and column of the start of a span.
+    pub fn line_column(&self, span: &Span) -> (usize, usize) {
+        let text = self.get(span.source).1;
+        let end = (0..=span.bytes.start.min(text.len())).rev().find(|&i| text.is_char_boundary(i)).unwrap_or(0);
+        let before = &text[..end];
+        let line_start = before.rfind('\n').map_or(0, |i| i + 1);
+        (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1)
+    }
+}
+
+/// Everything an import has to say, with the sources it speaks about.
+#[derive(Clone, Debug, Default)]
+pub struct Diagnostics {
+    /// The texts.
+    pub sources: Sources,
+    /// In the order they were found.
+    pub list: Vec<Diagnostic>,
+}
+
+impl Diagnostics {
+    /// Is there an error among them?
+    pub fn has_errors(&self) -> bool {
+        self.list.iter().any(|d| d.severity == Severity::Error)
+    }
+}
+
+impl fmt::Display for Severity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Severity::Warning => "warning",
+            Severity::Error => "error",
+        })
+    }
+}

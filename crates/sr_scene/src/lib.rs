@@ -1,0 +1,25 @@
+//! What a scene is, before it is compiled: plain data that a person can edit and Python can build.
+//!
+//! In: nothing. Out: [`SceneDesc`], [`Diagnostic`],. No file format, no ray, no
+//! sampling algorithm lives here.
+
+pub mod camera;
+pub mod desc;
+pub mod diagnostic;
+pub mod image;
+pub mod light;
+pub mod material;
+pub mod shape;
+pub mod texture;
+
+pub use camera::{CameraDesc, FilmDesc, FilterDesc, FovAxis};
+pub use desc::{MaterialId, SceneDesc, Settings, TextureId};
+pub use diagnostic::{Diagnostic, Diagnostics, Severity, SourceId, Sources, Span};
+pub use image::{Image, Pixels};
+pub use light::LightDesc;
+pub use material::{ColorInput, MaterialDesc, MicrofacetKind, ScalarInput};
+pub use shape::{Emission, Geometry, GroupDesc, InstanceDesc, MeshDesc, ShapeDesc};
+pub use texture::{Filter, TextureDesc, Wrap};
+
+/// Linear RGB: radiance, reflectance or importance.
+pub type Rgb = glam::Vec3;

@@ -1,0 +1,89 @@
+//! Shapes: meshes, spheres and disks, what they are made of, and what they emit.
+
+use std::sync::Arc;
+
+use glam::{Affine3A, Vec2, Vec3};
+
+use crate::{ColorInput, MaterialId, diagnostic::Span};
+
+/// A shape in the space of the list that holds it (world space for [`crate::SceneDesc::shapes`]).
+#[derive(Clone, Debug)]
+pub struct ShapeDesc {
+    /// Its form.
+    pub geometry: Geometry,
+    /// What it is made of.
+    pub material: MaterialId,
+    /// What it emits, if it is a light.
+    pub emission: Option<Emission>,
+    /// Where it was described.
+    pub span: Span,
+}
+
+/// The form of a shape.
+#[derive(Clone, Debug)]
+pub enum Geometry {
+    /// Triangles.
+    Mesh(Arc<MeshDesc>),
+    /// A sphere. Its (u, v) are (φ / 2π, θ / π) about its own +Z.
+    Sphere {
+        /// Centre.
+        center: Vec3,
+        /// Radius, positive.
+        radius: f32,
+        /// Rotation of the parametrisation: world-space +X, +Y, +Z of the sphere's own frame.
+        frame: glam::Mat3,
+        /// Do normals point inwards?
+        flip_normals: bool,
+    },
+    /// A flat disk or ellipse: centre ± `u_axis` ± `v_axis`, normal along `u_axis` × `v_axis`.
+    Disk {
+        /// Centre.
+        center: Vec3,
+        /// First half-axis.
+        u_axis: Vec3,
+        /// Second half-axis, perpendicular to the first.
+        v_axis: Vec3,
+        /// Does the normal point against `u_axis` × `v_axis`?
+        flip_normals: bool,
+    },
+}
+
+/// A triangle mesh. Per-vertex arrays are empty or as long as `positions`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MeshDesc {
+    /// What to call it in messages.
+    pub name: String,
+    /// Vertex positions.
+    pub positions: Vec<Vec3>,
+    /// Vertex normals, unit length; empty: flat shading.
+    pub normals: Vec<Vec3>,
+    /// Vertex texture coordinates; empty: barycentric coordinates of each triangle.
+    pub uvs: Vec<Vec2>,
+    /// Vertex indices, counter-clockwise seen from the front.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// Diffuse emission from the front of a shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Emission {
+    /// Radiance, in W sr⁻¹ m⁻² per channel.
+    pub radiance: ColorInput,
+}
+
+/// Shapes that are placed by instances.
+#[derive(Clone, Debug)]
+pub struct GroupDesc {
+    /// The shapes, in the group's space. They do not emit.
+    pub shapes: Vec<ShapeDesc>,
+}
+
+/// A placement of a group.
+#[derive(Clone, Debug)]
+pub struct InstanceDesc {
+    /// Index into [`crate::SceneDesc::groups`].
+    pub group: u32,
+    /// Placement; invertible.
+    pub world_from_group: Affine3A,
+    /// Where it was described.
+    pub span: Span,
+}
