@@ -15,4 +15,4 @@ pub use distribution::{Distribution, Invert, PointOf, RealOf, Sample};
 pub use measure::{Area, Counting, Lebesgue, Line, Measure, Plane, Real, SolidAngle, to_solid_angle};
 pub use mis::{balance_weight, mis_estimate, power_weight};
 pub use mixture::{Mix2, Mixture, MixtureError};
-pub use sequence::{Cursor, SampleId, Sequence};
+pub use sequence::{Cursor, Independent, OwenSobol, SampleId, Sequence, SequenceKind, UnknownSequence};

@@ -125,7 +125,8 @@ impl<A: Distribution, B: Distribution<Measure = A::Measure>> Distribution for Mi
     type Uniform = (f32, A::Uniform, B::Uniform);
 
     fn sample(&self, (u_pick, u_a, u_b): Self::Uniform) -> Option<Sample<A::Measure>> {
-        let value = if u_pick < self.weight_a { self.a.sample(u_a)?.value } else { self.b.sample(u_b)?.value };
+        let value =
+            if u_pick < self.weight_a { self.a.sample(u_a)?.value } else { self.b.sample(u_b)?.value };
         let pdf = self.pdf(value);
         (pdf > RealOf::<A>::ZERO).then_some(Sample { value, pdf })
     }

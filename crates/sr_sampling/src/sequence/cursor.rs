@@ -1,23 +1,8 @@
-//! Where the uniforms come from: pure functions of (pixel, sample index, dimension, seed).
+//! A sample's dimensions, one after the other.
 
 use glam::Vec2;
 
-/// Which sample of which pixel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct SampleId {
-    /// An index that is unique to the pixel (or to the integral).
-    pub pixel: u32,
-    /// The index of the sample within the pixel.
-    pub index: u32,
-}
-
-/// A source of uniforms in [0, 1). Pure: the same arguments give the same bits, in any order.
-pub trait Sequence: Sync {
-    /// One uniform.
-    fn get_1d(&self, at: SampleId, dim: u32) -> f32;
-    /// Two uniforms that are jointly well distributed.
-    fn get_2d(&self, at: SampleId, dim: u32) -> Vec2;
-}
+use super::{SampleId, Sequence};
 
 /// Walks the dimensions of one sample in order.
 #[derive(Clone, Copy, Debug)]
@@ -29,6 +14,7 @@ pub struct Cursor<'a, Q> {
 
 impl<'a, Q: Sequence> Cursor<'a, Q> {
     /// Starts at dimension 0 of sample `at`.
+    #[inline]
     pub fn new(sequence: &'a Q, at: SampleId) -> Self {
         Self { sequence, at, dim: 0 }
     }
@@ -53,5 +39,23 @@ impl<'a, Q: Sequence> Cursor<'a, Q> {
     #[inline]
     pub fn seek(&mut self, dim: u32) {
         self.dim = dim;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sequence::OwenSobol;
+
+    #[test]
+    fn takes_each_dimension_once() {
+        let sequence = OwenSobol::new(1);
+        let at = SampleId { pixel: 3, index: 4 };
+        let mut cursor = Cursor::new(&sequence, at);
+        assert_eq!(cursor.next_1d(), sequence.get_1d(at, 0));
+        assert_eq!(cursor.next_2d(), sequence.get_2d(at, 1));
+        assert_eq!(cursor.next_1d(), sequence.get_1d(at, 3));
+        cursor.seek(1);
+        assert_eq!(cursor.next_2d(), sequence.get_2d(at, 1));
     }
 }
