@@ -12,11 +12,9 @@ use crate::diagnostic::Span;
 pub struct CameraDesc {
     /// Rigid placement; a scale is removed when the scene is compiled.
     pub world_from_camera: Mat4,
-    /// Full horizontal angle of view, in radians, for the film's aspect ratio.
-    pub fov_x: f32,
-    /// How `fov_x` is to be derived again when the user asks for another film size.
+    /// The direction of the film along which `fov` is measured.
     pub fov_axis: FovAxis,
-    /// The angle of view along `fov_axis`, in radians.
+    /// The full angle of view along `fov_axis`, in radians.
     pub fov: f32,
     /// Rays start at this distance along +Z.
     pub near_clip: f32,
