@@ -3,6 +3,40 @@
 //! In: two unit directions pointing away from the surface, `wo` towards the camera and `wi` towards
 //! the light. Out: the BSDF value (without the cosine), a sampled `wi`, a density. No scene, no
 //! texture, no ray.
+//!
+//! One model a file; [`AnyBsdf`] is any of them by value. Models that reflect on one side do so on +Z and
+//! are black from below: who wants both sides flips the frame. No model divides two numbers that both
+//! vanish at grazing angles; see [`microfacet`](Microfacet) for how.
+
+mod any;
+mod beckmann;
+mod conductor;
+mod dielectric;
+mod diffuse;
+mod erf;
+mod ggx;
+pub mod interface;
+mod mask;
+mod microfacet;
+mod plastic;
+mod rough_coat;
+mod rough_conductor;
+mod rough_dielectric;
+mod rough_plastic;
+mod thin_dielectric;
+
+pub use any::{AnyBsdf, AnyModel};
+pub use conductor::Conductor;
+pub use dielectric::Dielectric;
+pub use diffuse::Diffuse;
+pub use mask::Mask;
+pub use microfacet::{Microfacet, MicrofacetKind};
+pub use plastic::{Plastic, SmoothCoat};
+pub use rough_coat::RoughPlasticTables;
+pub use rough_conductor::RoughConductor;
+pub use rough_dielectric::RoughDielectric;
+pub use rough_plastic::RoughPlastic;
+pub use thin_dielectric::ThinDielectric;
 
 use glam::{Vec2, Vec3};
 use sr_sampling::{Distribution, Sample, SolidAngle};

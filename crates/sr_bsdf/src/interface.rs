@@ -1,0 +1,117 @@
+//! What a flat interface does to a ray: which way it goes on, and how much of it.
+//!
+//! In: cosines and indices of refraction. Out: exact, unpolarised Fresnel coefficients and directions.
+
+use glam::Vec3;
+
+use crate::Rgb;
+
+/// What becomes of light that meets the interface between two dielectrics.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DielectricSplit {
+    /// The fraction reflected, in [0, 1]; 1 under total internal reflection.
+    pub reflectance: f32,
+    /// |cos θ| of the refracted direction; 0 under total internal reflection.
+    pub cos_t: f32,
+    /// Index of the far side over that of the near side.
+    pub eta: f32,
+}
+
+/// Splits light between reflection and refraction (Fresnel's equations, unpolarised).
+///
+/// - `cos_i`: cosine between the normal and the direction towards the near side; negative: from inside
+/// - `eta`: interior over exterior index, positive
+#[inline]
+pub fn dielectric(cos_i: f32, eta: f32) -> DielectricSplit {
+    let eta = if cos_i >= 0.0 { eta } else { 1.0 / eta };
+    let c = cos_i.abs();
+    if eta == 1.0 {
+        return DielectricSplit { reflectance: 0.0, cos_t: c, eta };
+    }
+    let cos_t_squared = 1.0 - (1.0 - c * c) / (eta * eta);
+    if cos_t_squared <= 0.0 {
+        return DielectricSplit { reflectance: 1.0, cos_t: 0.0, eta };
+    }
+    let cos_t = cos_t_squared.sqrt();
+    let s = (c - eta * cos_t) / (c + eta * cos_t);
+    let p = (eta * c - cos_t) / (eta * c + cos_t);
+    DielectricSplit { reflectance: 0.5 * (s * s + p * p), cos_t, eta }
+}
+
+/// The fraction of light that a conductor reflects (Fresnel's equations, unpolarised).
+///
+/// - `cos_i`: cosine between the normal and either direction, in [0, 1]
+/// - `eta`, `k`: real and imaginary part of the index over the exterior's, per channel
+/// - returns: per channel, in [0, 1]
+#[inline]
+pub fn conductor(cos_i: f32, eta: Rgb, k: Rgb) -> Rgb {
+    let cos_squared = Rgb::splat(cos_i * cos_i);
+    let sin_squared = Rgb::ONE - cos_squared;
+    // The complex square root of (η + ik)² − sin²θ is a + ib.
+    let real_part = eta * eta - k * k - sin_squared;
+    let a_b_squared = sqrt(real_part * real_part + 4.0 * eta * eta * k * k);
+    let a = sqrt((0.5 * (a_b_squared + real_part)).max(Rgb::ZERO));
+    let two_a_cos = 2.0 * cos_i * a;
+    let s = ratio(a_b_squared + cos_squared, two_a_cos);
+    let p = s * ratio(a_b_squared * cos_squared + sin_squared * sin_squared, two_a_cos * sin_squared);
+    0.5 * (s + p)
+}
+
+/// (x − y) / (x + y) for x ≥ y ≥ 0, with the limit at grazing incidence, 1, where both are 0.
+#[inline]
+fn ratio(x: Rgb, y: Rgb) -> Rgb {
+    let sum = x + y;
+    Rgb::select(sum.cmpgt(Rgb::ZERO), (x - y).max(Rgb::ZERO) / sum, Rgb::ONE)
+}
+
+#[inline]
+fn sqrt(x: Rgb) -> Rgb {
+    Rgb::new(x.x.sqrt(), x.y.sqrt(), x.z.sqrt())
+}
+
+/// The fraction of diffuse light that the interface between two dielectrics reflects: 2 ∫ F(μ) μ dμ.
+///
+/// - `eta`: index of the far side over that of the near side, positive
+///
+/// Closed form for η > 1 (Duntley 1942, "The optical properties of diffusing materials"); below 1
+/// by conservation of étendue, 1 − R(1/η) = (1 − R(η)) η².
+pub fn diffuse_reflectance(eta: f32) -> f32 {
+    let n = f64::from(eta);
+    if n < 1.0 {
+        return (1.0 - (1.0 - diffuse_reflectance_above_1(1.0 / n)) * n * n) as f32;
+    }
+    diffuse_reflectance_above_1(n) as f32
+}
+
+fn diffuse_reflectance_above_1(n: f64) -> f64 {
+    // Where the closed form's terms, of order 1 / (n − 1), cancel; R is below 10⁻⁶ there.
+    if n - 1.0 < 1e-6 {
+        return 0.0;
+    }
+    let n2 = n * n;
+    let n4 = n2 * n2;
+    0.5 + (n - 1.0) * (3.0 * n + 1.0) / (6.0 * (n + 1.0) * (n + 1.0))
+        + n2 * (n2 - 1.0).powi(2) / (n2 + 1.0).powi(3) * ((n - 1.0) / (n + 1.0)).ln()
+        - 2.0 * n * n2 * (n2 + 2.0 * n - 1.0) / ((n2 + 1.0) * (n4 - 1.0))
+        + 8.0 * n4 * (n4 + 1.0) / ((n2 + 1.0) * (n4 - 1.0).powi(2)) * n.ln()
+}
+
+/// `w` mirrored about the normal +Z.
+#[inline]
+pub fn reflect(w: Vec3) -> Vec3 {
+    Vec3::new(-w.x, -w.y, w.z)
+}
+
+/// `w` mirrored about the unit vector `m`.
+#[inline]
+pub fn reflect_about(w: Vec3, m: Vec3) -> Vec3 {
+    2.0 * w.dot(m) * m - w
+}
+
+/// `w` refracted at an interface whose unit normal `m` is on the side of `w`.
+///
+/// `split` is what [`dielectric`] says of w · m; not under total internal reflection.
+#[inline]
+pub fn refract_about(w: Vec3, m: Vec3, split: DielectricSplit) -> Vec3 {
+    (w.dot(m) / split.eta - split.cos_t) * m - w / split.eta
+}

@@ -1,0 +1,147 @@
+//! A smooth dielectric coating over a diffuse base.
+
+use std::f32::consts::FRAC_1_PI;
+
+use glam::{Vec2, Vec3};
+use sr_sampling::Distribution;
+use sr_sampling::warp::CosineHemisphere;
+
+use crate::interface::{dielectric, diffuse_reflectance, reflect};
+use crate::{Bsdf, BsdfSample, Lobes, Rgb};
+
+/// What is the same at every point of a smooth coating; made once per material.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SmoothCoat {
+    eta: f32,
+    internal_reflectance: f32,
+}
+
+impl SmoothCoat {
+    /// From the index of the coating over that of its surroundings, positive.
+    pub fn new(eta: f32) -> Self {
+        Self { eta, internal_reflectance: diffuse_reflectance(1.0 / eta) }
+    }
+}
+
+/// A smooth coating that reflects in one direction, over a base that scatters in all.
+///
+/// Light that enters bounces between base and coating until it leaves; the sum of all bounces
+/// multiplies the base's albedo a by 1 / (1 − a R) with R the coating's reflectance for diffuse light from
+/// inside. Unless `nonlinear`, by 1 / (1 − R), which keeps the base's hue. On the side of +Z only.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plastic {
+    eta: f32,
+    specular: Rgb,
+    /// Radiance that the base sends through the coating for each unit of irradiance, times π.
+    base: Rgb,
+    choice: LobeChoice,
+}
+
+impl Plastic {
+    /// - `diffuse`: albedo of the base, per channel in [0, 1]
+    /// - `specular`: scales the coating's reflection; physically 1
+    /// - `nonlinear`: does the base's colour saturate by interreflection below the coating?
+    #[inline]
+    pub fn new(coat: SmoothCoat, diffuse: Rgb, specular: Rgb, nonlinear: bool) -> Self {
+        Self {
+            eta: coat.eta,
+            specular,
+            base: base_below(diffuse, coat.internal_reflectance, coat.eta, nonlinear),
+            choice: LobeChoice::new(diffuse, specular),
+        }
+    }
+}
+
+impl Bsdf for Plastic {
+    #[inline]
+    fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
+        if wo.z <= 0.0 || wi.z <= 0.0 {
+            return Rgb::ZERO;
+        }
+        let (split_o, split_i) = (dielectric(wo.z, self.eta), dielectric(wi.z, self.eta));
+        self.base * ((1.0 - split_o.reflectance) * (1.0 - split_i.reflectance) * FRAC_1_PI)
+    }
+
+    #[inline]
+    fn sample(&self, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
+        if wo.z <= 0.0 {
+            return None;
+        }
+        let f = dielectric(wo.z, self.eta).reflectance;
+        let p = self.choice.given_reflectance(f);
+        if u_lobe < p.specular {
+            let weight = self.specular * (f / p.specular);
+            return Some(BsdfSample { wi: reflect(wo), weight, pdf: p.specular, delta: true, eta: 1.0 });
+        }
+        if p.diffuse == 0.0 {
+            return None;
+        }
+        let s = CosineHemisphere.sample(u)?;
+        let f_i = dielectric(s.value.z, self.eta).reflectance;
+        let weight = self.base * ((1.0 - f_i) * ((1.0 - f) / p.diffuse));
+        Some(BsdfSample { wi: s.value, weight, pdf: p.diffuse * s.pdf, delta: false, eta: 1.0 })
+    }
+
+    #[inline]
+    fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
+        if wo.z <= 0.0 || wi.z <= 0.0 {
+            return 0.0;
+        }
+        let p = self.choice.given_reflectance(dielectric(wo.z, self.eta).reflectance);
+        p.diffuse * CosineHemisphere.pdf(wi)
+    }
+
+    #[inline]
+    fn lobes(&self) -> Lobes {
+        Lobes { reflection: true, transmission: false, delta: true }
+    }
+
+    #[inline]
+    fn albedo(&self) -> Rgb {
+        let f = dielectric(1.0, self.eta).reflectance;
+        f * self.specular + (1.0 - f) * (1.0 - f) * self.base
+    }
+}
+
+/// Albedo of a base below a coating, for light that has passed the coating once, before it passes it again.
+///
+/// All bounces between base and coating are summed; the solid angle that widens on leaving takes 1/η².
+#[inline]
+pub(crate) fn base_below(diffuse: Rgb, internal_reflectance: f32, eta: f32, nonlinear: bool) -> Rgb {
+    let returned = if nonlinear { diffuse * internal_reflectance } else { Rgb::splat(internal_reflectance) };
+    diffuse / ((Rgb::ONE - returned) * (eta * eta))
+}
+
+/// How often the coating is sampled and how often the base: in proportion to Fresnel's split times
+/// the mean of the lobe's colour.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LobeChoice {
+    specular: f32,
+    diffuse: f32,
+}
+
+/// The probability of either lobe. They sum to 1, or are both 0 where nothing is reflected.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LobeProbabilities {
+    pub specular: f32,
+    pub diffuse: f32,
+}
+
+impl LobeChoice {
+    #[inline]
+    pub fn new(diffuse: Rgb, specular: Rgb) -> Self {
+        Self { specular: specular.element_sum(), diffuse: diffuse.element_sum() }
+    }
+
+    /// Given the fraction of light that the coating reflects.
+    #[inline]
+    pub fn given_reflectance(&self, f: f32) -> LobeProbabilities {
+        let (specular, diffuse) = (f * self.specular, (1.0 - f) * self.diffuse);
+        let sum = specular + diffuse;
+        if sum < f32::MIN_POSITIVE {
+            return LobeProbabilities { specular: 0.0, diffuse: 0.0 };
+        }
+        let specular = specular / sum;
+        LobeProbabilities { specular, diffuse: 1.0 - specular }
+    }
+}

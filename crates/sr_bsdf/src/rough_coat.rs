@@ -1,0 +1,92 @@
+//! How much light a rough dielectric interface lets through, tabulated.
+//!
+//! In: a microfacet distribution and an index. Out: numbers that are the same at every point of the material.
+
+use glam::{Vec2, Vec3};
+
+use crate::interface::{dielectric, reflect_about, refract_about};
+use crate::{Microfacet, MicrofacetKind};
+
+/// Entries of the table, at equally spaced cosines from 0 to 1 (as Mitsuba's).
+const NODES: usize = 64;
+/// Points of the rule that integrates over visible normals, per dimension.
+const QUADRATURE: usize = 48;
+
+/// What is the same at every point of a rough coating; made once per material.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RoughPlasticTables {
+    distribution: Microfacet,
+    eta: f32,
+    internal_reflectance: f32,
+    transmittance: [f32; NODES],
+}
+
+impl RoughPlasticTables {
+    /// Integrates over the visible normals of a coating; takes about 10⁵ evaluations.
+    ///
+    /// - `alpha`: roughness, the same in all directions
+    /// - `eta`: index of the coating over that of its surroundings, positive
+    pub fn new(kind: MicrofacetKind, alpha: f32, eta: f32) -> Self {
+        let distribution = Microfacet::isotropic(kind, alpha);
+        let transmittance = std::array::from_fn(|i| {
+            mean_over_visible_normals(&distribution, node(i), |wo, m| {
+                let split = dielectric(wo.dot(m), eta);
+                let wi = refract_about(wo, m, split);
+                if wi.z < 0.0 { (1.0 - split.reflectance) * distribution.g1(wi) } else { 0.0 }
+            })
+        });
+        let reflectance_inside = |cos: f32| {
+            mean_over_visible_normals(&distribution, cos, |wo, m| {
+                let wi = reflect_about(wo, m);
+                let f = dielectric(wo.dot(m), 1.0 / eta).reflectance;
+                if wi.z > 0.0 { f * distribution.g1(wi) } else { 0.0 }
+            })
+        };
+        let internal_reflectance =
+            (0..NODES).map(|i| 2.0 * node(i) * reflectance_inside(node(i))).sum::<f32>() / NODES as f32;
+        Self { distribution, eta, internal_reflectance, transmittance }
+    }
+
+    /// The distribution of the coating's normals.
+    #[inline]
+    pub fn distribution(&self) -> &Microfacet {
+        &self.distribution
+    }
+
+    /// The index of the coating over that of its surroundings.
+    #[inline]
+    pub fn eta(&self) -> f32 {
+        self.eta
+    }
+
+    /// The fraction of diffuse light from inside that the coating reflects.
+    #[inline]
+    pub fn internal_reflectance(&self) -> f32 {
+        self.internal_reflectance
+    }
+
+    /// The fraction of light from outside that the coating lets in, at cos θ in [0, 1].
+    #[inline]
+    pub fn transmittance(&self, cos: f32) -> f32 {
+        let x = cos * (NODES - 1) as f32;
+        let i = (x as usize).min(NODES - 2);
+        let t = x - i as f32;
+        self.transmittance[i] + t * (self.transmittance[i + 1] - self.transmittance[i])
+    }
+}
+
+/// The cosine of entry `i`; the first is just above the horizon.
+fn node(i: usize) -> f32 {
+    (i as f32 / (NODES - 1) as f32).max(1e-6)
+}
+
+/// The mean of `f(wo, m)` over the normals `m` that `wo`, at cos θ = `cos`, sees.
+fn mean_over_visible_normals(d: &Microfacet, cos: f32, f: impl Fn(Vec3, Vec3) -> f32) -> f32 {
+    let wo = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
+    let at = |i: usize| (i as f32 + 0.5) / QUADRATURE as f32;
+    let values = (0..QUADRATURE * QUADRATURE).map(|i| {
+        let u = Vec2::new(at(i % QUADRATURE), at(i / QUADRATURE));
+        f64::from(f(wo, d.sample_visible(wo, u)))
+    });
+    (values.sum::<f64>() / (QUADRATURE * QUADRATURE) as f64) as f32
+}

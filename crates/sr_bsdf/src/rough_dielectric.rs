@@ -1,0 +1,148 @@
+//! A rough interface between two dielectrics: frosted glass.
+
+use glam::{Vec2, Vec3};
+
+use crate::interface::{dielectric, reflect_about, refract_about};
+use crate::{Bsdf, BsdfSample, Lobes, Microfacet, Rgb};
+
+/// A surface of small smooth interfaces (Walter et al. 2007).
+///
+/// Radiance that crosses the interface is scaled by 1/η², as for [`crate::Dielectric`]. One bounce
+/// only, so a rough surface loses some energy.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RoughDielectric {
+    distribution: Microfacet,
+    eta: f32,
+    reflectance: Rgb,
+    transmittance: Rgb,
+}
+
+impl RoughDielectric {
+    /// An interface between media more alike than this bends light less than `f32` can tell.
+    const MIN_CONTRAST: f32 = 1e-4;
+
+    /// - `eta`: index inside (−Z) over that outside (+Z), positive; moved away from 1 if it is nearer
+    ///   than 10⁻⁴, for a rough interface that does not bend light is no longer a density
+    /// - `reflectance`, `transmittance`: scale what Fresnel's equations give; physically 1
+    #[inline]
+    pub fn new(distribution: Microfacet, eta: f32, reflectance: Rgb, transmittance: Rgb) -> Self {
+        let contrast = eta - 1.0;
+        let eta = if contrast.abs() < Self::MIN_CONTRAST {
+            1.0 + Self::MIN_CONTRAST.copysign(contrast)
+        } else {
+            eta
+        };
+        Self { distribution, eta, reflectance, transmittance }
+    }
+
+    /// Turns the frame so that `wo` is on the side of +Z; gives the far index over the near one.
+    #[inline]
+    fn seen_from_above(&self, wo: Vec3, wi: Vec3) -> (Vec3, Vec3, f32) {
+        if wo.z > 0.0 { (wo, wi, self.eta) } else { (flip(wo), flip(wi), 1.0 / self.eta) }
+    }
+}
+
+/// The facet that refracts between two directions.
+struct RefractingFacet {
+    m: Vec3,
+    /// (1 − F) |wi · m| / (wo · m + η wi · m)²
+    factor: f32,
+    cos_o: f32,
+}
+
+/// `None` if no facet refracts between `wo` (above) and `wi` (below).
+#[inline]
+fn refracting_facet(wo: Vec3, wi: Vec3, eta: f32) -> Option<RefractingFacet> {
+    let h = wo + eta * wi;
+    let length_squared = h.length_squared(); // is (wo · m + η wi · m)²
+    let m = h * (1.0 / length_squared.sqrt()).copysign(h.z);
+    let (cos_o, cos_i) = (wo.dot(m), -wi.dot(m));
+    if cos_o <= 0.0 || cos_i <= 0.0 || length_squared == 0.0 {
+        return None;
+    }
+    let factor = (1.0 - dielectric(cos_o, eta).reflectance) * cos_i / length_squared;
+    Some(RefractingFacet { m, factor, cos_o })
+}
+
+#[inline]
+fn flip(w: Vec3) -> Vec3 {
+    Vec3::new(w.x, w.y, -w.z)
+}
+
+impl Bsdf for RoughDielectric {
+    #[inline]
+    fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
+        let (wo, wi, eta) = self.seen_from_above(wo, wi);
+        if wo.z == 0.0 || wi.z == 0.0 {
+            return Rgb::ZERO;
+        }
+        if wi.z > 0.0 {
+            let m = (wo + wi).normalize_or_zero();
+            let f = dielectric(wo.dot(m), eta).reflectance;
+            return self.reflectance * (f * self.distribution.reflection(wo, wi, m));
+        }
+        let Some(facet) = refracting_facet(wo, wi, eta) else { return Rgb::ZERO };
+        let area = self.distribution.projected_area(wo) * self.distribution.projected_area(wi);
+        self.transmittance * (facet.factor * facet.cos_o * self.distribution.d(facet.m) / area)
+    }
+
+    #[inline]
+    fn sample(&self, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
+        if wo.z == 0.0 {
+            return None;
+        }
+        let above = wo.z > 0.0;
+        let (wo, _, eta) = self.seen_from_above(wo, wo);
+        let m = self.distribution.sample_visible(wo, u);
+        let cos_o = wo.dot(m);
+        if cos_o <= 0.0 {
+            return None;
+        }
+        let split = dielectric(cos_o, eta);
+        let sample = if u_lobe < split.reflectance {
+            let wi = reflect_about(wo, m);
+            if wi.z <= 0.0 {
+                return None;
+            }
+            let pdf = split.reflectance * self.distribution.reflection_pdf(wo, m);
+            BsdfSample { wi, weight: self.reflectance, pdf, delta: false, eta: 1.0 }
+        } else {
+            let wi = refract_about(wo, m, split);
+            if wi.z >= 0.0 {
+                return None;
+            }
+            // wo · m + η wi · m = cos_o − η cos_t, without the cancellation for η near 1.
+            let half_length = (1.0 - eta * eta) / (cos_o + eta * split.cos_t);
+            let jacobian = eta * eta * split.cos_t / (half_length * half_length);
+            let pdf = (1.0 - split.reflectance) * self.distribution.visible_pdf(wo, m) * jacobian;
+            BsdfSample { wi, weight: self.transmittance / (eta * eta), pdf, delta: false, eta }
+        };
+        let wi = if above { sample.wi } else { flip(sample.wi) };
+        let weight = sample.weight * self.distribution.g1(wi);
+        (sample.pdf > 0.0).then_some(BsdfSample { wi, weight, ..sample })
+    }
+
+    #[inline]
+    fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
+        let (wo, wi, eta) = self.seen_from_above(wo, wi);
+        if wo.z == 0.0 || wi.z == 0.0 {
+            return 0.0;
+        }
+        if wi.z > 0.0 {
+            let m = (wo + wi).normalize_or_zero();
+            return dielectric(wo.dot(m), eta).reflectance * self.distribution.reflection_pdf(wo, m);
+        }
+        refracting_facet(wo, wi, eta)
+            .map_or(0.0, |facet| facet.factor * eta * eta * self.distribution.visible_pdf(wo, facet.m))
+    }
+
+    #[inline]
+    fn lobes(&self) -> Lobes {
+        Lobes { reflection: true, transmission: true, delta: false }
+    }
+
+    #[inline]
+    fn albedo(&self) -> Rgb {
+        self.transmittance.lerp(self.reflectance, dielectric(1.0, self.eta).reflectance)
+    }
+}
