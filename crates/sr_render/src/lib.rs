@@ -7,6 +7,7 @@ pub mod camera;
 pub mod film;
 pub mod filter;
 pub mod image;
+pub mod output;
 pub mod strategy;
 
 pub use film::{Film, FilmError};
