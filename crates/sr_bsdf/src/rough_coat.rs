@@ -22,7 +22,7 @@ pub struct RoughPlasticTables {
 }
 
 impl RoughPlasticTables {
-    /// Integrates over the visible normals of a coating; takes about 10⁵ evaluations.
+    /// Integrates over the visible normals of a coating; takes about 3 · 10⁵ evaluations.
     ///
     /// - `alpha`: roughness, the same in all directions
     /// - `eta`: index of the coating over that of its surroundings, positive
@@ -59,7 +59,10 @@ impl RoughPlasticTables {
         self.eta
     }
 
-    /// The fraction of diffuse light from inside that the coating reflects.
+    /// The fraction of diffuse light from inside that the coating reflects, 2 ∫ R(μ) μ dμ.
+    ///
+    /// It is the plain mean of 2 R(μ) μ over the table's cosines, as in Mitsuba. That is below the integral
+    /// by up to 0.009 and makes the base up to 2 % darker (η = 1.5), but images agree with Mitsuba's.
     #[inline]
     pub fn internal_reflectance(&self) -> f32 {
         self.internal_reflectance
@@ -81,12 +84,22 @@ fn node(i: usize) -> f32 {
 }
 
 /// The mean of `f(wo, m)` over the normals `m` that `wo`, at cos θ = `cos`, sees.
+///
+/// The midpoint rule in t with u = 3t² − 2t³, whose weight 6t(1 − t) vanishes where the normals' tails,
+/// at the edges of the unit square, are singular.
 fn mean_over_visible_normals(d: &Microfacet, cos: f32, f: impl Fn(Vec3, Vec3) -> f32) -> f32 {
     let wo = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
-    let at = |i: usize| (i as f32 + 0.5) / QUADRATURE as f32;
-    let values = (0..QUADRATURE * QUADRATURE).map(|i| {
-        let u = Vec2::new(at(i % QUADRATURE), at(i / QUADRATURE));
-        f64::from(f(wo, d.sample_visible(wo, u)))
+    let rule = (0..QUADRATURE).map(|i| {
+        let t = (i as f32 + 0.5) / QUADRATURE as f32;
+        (t * t * (3.0 - 2.0 * t), t * (1.0 - t))
     });
-    (values.sum::<f64>() / (QUADRATURE * QUADRATURE) as f64) as f32
+    let (mut sum, mut total) = (0.0, 0.0);
+    for (x, weight_x) in rule.clone() {
+        for (y, weight_y) in rule.clone() {
+            let weight = f64::from(weight_x * weight_y);
+            sum += weight * f64::from(f(wo, d.sample_visible(wo, Vec2::new(x, y))));
+            total += weight;
+        }
+    }
+    (sum / total) as f32
 }
