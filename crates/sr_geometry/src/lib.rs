@@ -1,1 +1,33 @@
-//! sr_geometry
+//! Shapes and the rays that meet them.
+//!
+//! In: [`GeometryInput`], borrowed triangle meshes, spheres and disks in world space and in groups that
+//! [`Instance`]s place. Out: [`Geometry`], flat arrays behind one 8-wide bounding volume hierarchy, which answers
+//! [`Geometry::intersect`] (closest [`Hit`]), [`Geometry::occluded`] (any hit) and [`Geometry::surface`]
+//! (position with its error bound, normals, texture coordinates). No material and no light is known here.
+//!
+//! Invariants:
+//! - Triangles are watertight: a ray through a shared edge or vertex hits at least one of its triangles.
+//! - [`Surface::spawn_ray`] leaves the surface by a bound of the rounding errors there, not by a global epsilon.
+//! - The same input gives the same tree, hence the same hits, for any number of threads.
+//!
+//! Coordinates are `f32`. Sizes and distances between 1e-12 and 1e12 are in the range where nothing overflows.
+//!
+//! Reading order: `ray`, `shape`, `geometry`, `surface`, then `bvh`.
+
+mod bounds;
+mod bvh;
+mod disk;
+mod geometry;
+mod instance;
+mod offset;
+mod ray;
+mod shape;
+mod sphere;
+mod surface;
+
+pub use bounds::Bounds3;
+pub use geometry::{Geometry, ShapeRef};
+pub use offset::offset_ray_origin;
+pub use ray::{Hit, NO_INSTANCE, Ray, ShapeId};
+pub use shape::{Disk, GeometryError, GeometryInput, Instance, Shape, Sphere, TriangleMesh};
+pub use surface::{Surface, Tangents};

@@ -1,0 +1,169 @@
+//! From primitives to a tree of 8-wide nodes.
+//!
+//! A node starts with one child, all its primitives, and cuts the child with the largest area in two until it has
+//! eight: the surface area heuristic's greedy collapse of a binary tree, without making that tree.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use super::split::{Extent, split_middle, split_sah};
+use super::{Node, NodeRef, PrimRef, WIDTH};
+
+/// The largest number of nodes on a path from the root to a leaf.
+pub(super) const MAX_DEPTH: usize = 36;
+
+/// Subtrees of more primitives than this are built in parallel.
+const PARALLEL: usize = 1 << 12;
+
+/// A leaf that fits one block is cut further only if the areas of its parts sum to less than this of its own.
+const WORTH_CUTTING: f32 = 0.9;
+
+/// A tree whose blocks are still ranges of the primitives.
+pub(super) struct BuiltTree {
+    pub root: NodeRef,
+    pub nodes: Vec<Node>,
+    pub leaves: Vec<Range<usize>>,
+}
+
+impl BuiltTree {
+    /// Makes its references those after `nodes` and `blocks` earlier ones.
+    pub fn shift(&mut self, nodes: usize, blocks: usize) {
+        let shift = |child: NodeRef| match child {
+            NodeRef::NONE => child,
+            child if child.is_node() => NodeRef::node(child.index() + nodes),
+            child if child.is_block() => NodeRef::block(child.index() + blocks),
+            child => child,
+        };
+        self.root = shift(self.root);
+        for node in &mut self.nodes {
+            node.children = node.children.map(shift);
+        }
+    }
+
+    fn append(&mut self, mut subtree: Self) -> NodeRef {
+        subtree.shift(self.nodes.len(), self.leaves.len());
+        self.nodes.append(&mut subtree.nodes);
+        self.leaves.append(&mut subtree.leaves);
+        subtree.root
+    }
+}
+
+/// A part of the primitives that will become a child.
+struct Part {
+    range: Range<usize>,
+    extent: Extent,
+    /// Is it better, or only possible, to leave it whole?
+    done: bool,
+}
+
+impl Part {
+    fn new(prims: &[PrimRef], range: Range<usize>) -> Self {
+        Self { extent: Extent::of(&prims[range.clone()]), done: range.len() <= 1, range }
+    }
+}
+
+/// Builds the tree, reordering `prims`. The result does not depend on the number of threads.
+pub(super) fn build(prims: &mut [PrimRef]) -> BuiltTree {
+    let mut tree = BuiltTree { root: NodeRef::NONE, nodes: Vec::new(), leaves: Vec::new() };
+    if !prims.is_empty() {
+        tree.root = build_subtree(prims, 0, 1, &mut tree);
+    }
+    tree
+}
+
+/// Can these primitives be one leaf?
+fn fits_leaf(prims: &[PrimRef]) -> bool {
+    prims.len() == 1 || (prims.len() <= WIDTH && prims.iter().all(PrimRef::is_triangle))
+}
+
+/// Appends the tree over `prims`, the primitives from `first` on, to `tree`.
+fn build_subtree(prims: &mut [PrimRef], first: usize, depth: usize, tree: &mut BuiltTree) -> NodeRef {
+    if fits_leaf(prims) {
+        if !prims[0].is_triangle() {
+            return NodeRef::other(prims[0].primitive);
+        }
+        tree.leaves.push(first..first + prims.len());
+        return NodeRef::block(tree.leaves.len() - 1);
+    }
+    let parts = cut(prims, depth);
+    let index = tree.nodes.len();
+    tree.nodes.push(Node::empty());
+    let children = build_children(prims, &parts, first, depth, tree);
+    for (slot, (part, child)) in parts.iter().zip(children).enumerate() {
+        tree.nodes[index].set_child(slot, &part.extent.bounds, child);
+    }
+    NodeRef::node(index)
+}
+
+fn build_children(
+    prims: &mut [PrimRef],
+    parts: &[Part],
+    first: usize,
+    depth: usize,
+    tree: &mut BuiltTree,
+) -> Vec<NodeRef> {
+    if prims.len() <= PARALLEL {
+        let build = |part: &Part| {
+            let range = part.range.clone();
+            let first = first + range.start;
+            build_subtree(&mut prims[range], first, depth + 1, tree)
+        };
+        return parts.iter().map(build).collect();
+    }
+    let mut slices = Vec::with_capacity(parts.len());
+    let mut rest = prims;
+    for part in parts {
+        let (slice, tail) = rest.split_at_mut(part.range.len());
+        slices.push((slice, first + part.range.start));
+        rest = tail;
+    }
+    let build = |(slice, first)| {
+        let mut subtree = BuiltTree { root: NodeRef::NONE, nodes: Vec::new(), leaves: Vec::new() };
+        subtree.root = build_subtree(slice, first, depth + 1, &mut subtree);
+        subtree
+    };
+    let subtrees: Vec<BuiltTree> = slices.into_par_iter().map(build).collect();
+    subtrees.into_iter().map(|subtree| tree.append(subtree)).collect()
+}
+
+/// Reorders `prims` and cuts them into at least two and at most eight parts, which follow one another.
+fn cut(prims: &mut [PrimRef], depth: usize) -> Vec<Part> {
+    let mut parts = Vec::with_capacity(WIDTH);
+    parts.push(Part::new(prims, 0..prims.len()));
+    let balanced = depth + balanced_depth(prims.len()) >= MAX_DEPTH;
+    while parts.len() < WIDTH {
+        let open = parts.iter().enumerate().filter(|(_, part)| !part.done);
+        let size = |part: &Part| match balanced {
+            true => part.range.len() as f32,
+            false => part.extent.bounds.half_area(),
+        };
+        let Some((widest, _)) = open.max_by(|(_, a), (_, b)| size(a).total_cmp(&size(b))) else {
+            break;
+        };
+        let part = &mut parts[widest];
+        let range = part.range.clone();
+        let (all, extent) = (&mut prims[range.clone()], part.extent);
+        let is_leaf = fits_leaf(all);
+        let middle = match split_sah(all, &extent).filter(|_| !balanced) {
+            Some((_, total)) if is_leaf && total > WORTH_CUTTING * extent.bounds.half_area() => None,
+            Some((middle, _)) => Some(middle),
+            None if is_leaf => None,
+            None => Some(split_middle(all, &extent)),
+        };
+        let Some(middle) = middle else {
+            part.done = true;
+            continue;
+        };
+        let middle = range.start + middle;
+        parts[widest] = Part::new(prims, range.start..middle);
+        parts.insert(widest + 1, Part::new(prims, middle..range.end));
+    }
+    parts
+}
+
+/// Levels that are enough for `count` primitives if every node cuts them into eight parts whose sizes differ by
+/// at most a factor of two: each level at least quarters the largest part.
+fn balanced_depth(count: usize) -> usize {
+    1 + (usize::BITS - count.leading_zeros()).div_ceil(2) as usize
+}

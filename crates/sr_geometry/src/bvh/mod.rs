@@ -1,0 +1,185 @@
+//! One 8-wide bounding volume hierarchy for triangles, spheres, disks and instances.
+//!
+//! In: [`PrimRef`]s, a box and an identity each. Out: [`Bvh`], flat arrays of nodes and of blocks of up to eight
+//! triangles, and a [`NodeRef`] per tree. `build` decides the tree, `traverse` walks it with the
+//! instruction set that `simd` chose. Several trees (the world's and the groups') share the arrays.
+//!
+//! Invariant: every tree is at most [`MAX_DEPTH`] nodes deep, so the traversal stack cannot overflow.
+
+mod build;
+mod simd;
+mod split;
+mod traverse;
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use crate::{Bounds3, ShapeId};
+use simd::Kernel;
+
+use build::MAX_DEPTH;
+
+/// Children of a node, and triangles of a block.
+pub(crate) const WIDTH: usize = 8;
+
+/// The largest number of nodes, of blocks or of other primitives that a [`NodeRef`] can tell apart.
+pub(crate) const MAX_INDEX: usize = (1 << 30) - 1;
+
+/// What the builder sees of a primitive.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PrimRef {
+    pub bounds: Bounds3,
+    /// The triangle's shape, or [`PrimRef::OTHER`].
+    pub shape: u32,
+    /// The triangle within its mesh, or what an other leaf refers to.
+    pub primitive: u32,
+}
+
+impl PrimRef {
+    /// `shape` of everything that is not a triangle.
+    pub const OTHER: u32 = u32::MAX;
+
+    fn is_triangle(&self) -> bool {
+        self.shape != Self::OTHER
+    }
+}
+
+/// A child: a node, a block of triangles, one other primitive, or nothing. Kind in the upper two bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct NodeRef(u32);
+
+impl NodeRef {
+    /// No child, or a tree without primitives.
+    pub const NONE: Self = Self(u32::MAX);
+    const KIND: u32 = 3 << 30;
+    const BLOCK: u32 = 1 << 30;
+    const OTHER: u32 = 2 << 30;
+
+    fn node(index: usize) -> Self {
+        Self(index as u32)
+    }
+
+    fn block(index: usize) -> Self {
+        Self(index as u32 | Self::BLOCK)
+    }
+
+    fn other(index: u32) -> Self {
+        Self(index | Self::OTHER)
+    }
+
+    #[inline(always)]
+    fn is_node(self) -> bool {
+        self.0 < Self::BLOCK
+    }
+
+    #[inline(always)]
+    fn is_block(self) -> bool {
+        self.0 & Self::KIND == Self::BLOCK
+    }
+
+    #[inline(always)]
+    fn index(self) -> usize {
+        (self.0 & !Self::KIND) as usize
+    }
+}
+
+/// Boxes of eight children, and the children. A missing child has the empty box.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(crate) struct Node {
+    /// Per axis: smallest, largest coordinates.
+    bounds: [[[f32; WIDTH]; 2]; 3],
+    children: [NodeRef; WIDTH],
+}
+
+impl Node {
+    fn empty() -> Self {
+        let axis = [[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]];
+        Self { bounds: [axis; 3], children: [NodeRef::NONE; WIDTH] }
+    }
+
+    fn set_child(&mut self, slot: usize, bounds: &Bounds3, child: NodeRef) {
+        for axis in 0..3 {
+            self.bounds[axis][0][slot] = bounds.min[axis];
+            self.bounds[axis][1][slot] = bounds.max[axis];
+        }
+        self.children[slot] = child;
+    }
+}
+
+/// Up to eight triangles, transposed. Missing ones have NaN vertices, which no ray hits.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub(crate) struct TriangleBlock {
+    /// By vertex, then axis.
+    vertices: [[[f32; WIDTH]; 3]; 3],
+    shape: [u32; WIDTH],
+    primitive: [u32; WIDTH],
+}
+
+impl TriangleBlock {
+    fn new(prims: &[PrimRef], vertices_of: impl Fn(ShapeId, u32) -> [Vec3; 3]) -> Self {
+        let mut block =
+            Self { vertices: [[[f32::NAN; WIDTH]; 3]; 3], shape: [0; WIDTH], primitive: [0; WIDTH] };
+        for (lane, prim) in prims.iter().enumerate() {
+            let vertices = vertices_of(ShapeId(prim.shape), prim.primitive);
+            for (of_block, vertex) in block.vertices.iter_mut().zip(vertices) {
+                for axis in 0..3 {
+                    of_block[axis][lane] = vertex[axis];
+                }
+            }
+            block.shape[lane] = prim.shape;
+            block.primitive[lane] = prim.primitive;
+        }
+        block
+    }
+}
+
+/// One tree within a [`Bvh`].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Tree {
+    root: NodeRef,
+    pub bounds: Bounds3,
+}
+
+impl Tree {
+    /// The tree without primitives.
+    pub const EMPTY: Self = Self { root: NodeRef::NONE, bounds: Bounds3::EMPTY };
+}
+
+/// The arrays that all trees share.
+#[derive(Debug)]
+pub(crate) struct Bvh {
+    nodes: Vec<Node>,
+    blocks: Vec<TriangleBlock>,
+    kernel: Kernel,
+}
+
+impl Bvh {
+    pub fn new() -> Self {
+        Self { nodes: Vec::new(), blocks: Vec::new(), kernel: Kernel::detect() }
+    }
+
+    /// Builds a tree over `prims`, which it reorders. `vertices_of` fetches a triangle's vertices.
+    pub fn add_tree(
+        &mut self,
+        prims: &mut [PrimRef],
+        vertices_of: impl Fn(ShapeId, u32) -> [Vec3; 3] + Sync,
+    ) -> Tree {
+        let bounds = prims.par_iter().map(|p| p.bounds).reduce(|| Bounds3::EMPTY, Bounds3::union);
+        let (first_node, first_block) = (self.nodes.len(), self.blocks.len());
+        let mut tree = build::build(prims);
+        tree.shift(first_node, first_block);
+        self.nodes.append(&mut tree.nodes);
+        let prims = &*prims;
+        let blocks =
+            tree.leaves.par_iter().map(|leaf| TriangleBlock::new(&prims[leaf.clone()], &vertices_of));
+        self.blocks.par_extend(blocks);
+        Tree { root: tree.root, bounds }
+    }
+
+    /// Bytes of nodes and blocks.
+    pub fn memory_bytes(&self) -> usize {
+        size_of_val(&self.nodes[..]) + size_of_val(&self.blocks[..])
+    }
+}

@@ -1,0 +1,193 @@
+//! Eight `f32` at once: the few operations that traversal needs, in AVX2 and in plain Rust.
+//!
+//! Both give the same bits: nothing is fused or reassociated, and `min` and `max` treat NaN alike.
+
+use super::WIDTH;
+
+/// Eight lanes. `min(a, b)` and `max(a, b)` return `b` where either is NaN.
+pub(super) trait Simd: Copy {
+    type F: Copy;
+    fn splat(self, x: f32) -> Self::F;
+    fn load(self, x: &[f32; WIDTH]) -> Self::F;
+    fn to_array(self, x: Self::F) -> [f32; WIDTH];
+    fn add(self, a: Self::F, b: Self::F) -> Self::F;
+    fn sub(self, a: Self::F, b: Self::F) -> Self::F;
+    fn mul(self, a: Self::F, b: Self::F) -> Self::F;
+    fn div(self, a: Self::F, b: Self::F) -> Self::F;
+    fn min(self, a: Self::F, b: Self::F) -> Self::F;
+    fn max(self, a: Self::F, b: Self::F) -> Self::F;
+    /// Bit i: a[i] ≤ b[i]; false where either is NaN.
+    fn le(self, a: Self::F, b: Self::F) -> u32;
+    /// Bit i: a[i] < b[i]; false where either is NaN.
+    fn lt(self, a: Self::F, b: Self::F) -> u32;
+    /// Asks for the cache lines of a value that is needed soon.
+    fn prefetch<T>(self, value: &T);
+}
+
+/// Plain Rust, which compilers turn into SSE2 or NEON.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Portable;
+
+#[inline(always)]
+fn lanes<R>(f: impl Fn(usize) -> R) -> [R; WIDTH] {
+    std::array::from_fn(f)
+}
+
+impl Simd for Portable {
+    type F = [f32; WIDTH];
+
+    #[inline(always)]
+    fn splat(self, x: f32) -> Self::F {
+        [x; WIDTH]
+    }
+    #[inline(always)]
+    fn load(self, x: &[f32; WIDTH]) -> Self::F {
+        *x
+    }
+    #[inline(always)]
+    fn to_array(self, x: Self::F) -> [f32; WIDTH] {
+        x
+    }
+    #[inline(always)]
+    fn add(self, a: Self::F, b: Self::F) -> Self::F {
+        lanes(|i| a[i] + b[i])
+    }
+    #[inline(always)]
+    fn sub(self, a: Self::F, b: Self::F) -> Self::F {
+        lanes(|i| a[i] - b[i])
+    }
+    #[inline(always)]
+    fn mul(self, a: Self::F, b: Self::F) -> Self::F {
+        lanes(|i| a[i] * b[i])
+    }
+    #[inline(always)]
+    fn div(self, a: Self::F, b: Self::F) -> Self::F {
+        lanes(|i| a[i] / b[i])
+    }
+    #[inline(always)]
+    fn min(self, a: Self::F, b: Self::F) -> Self::F {
+        lanes(|i| if a[i] < b[i] { a[i] } else { b[i] })
+    }
+    #[inline(always)]
+    fn max(self, a: Self::F, b: Self::F) -> Self::F {
+        lanes(|i| if a[i] > b[i] { a[i] } else { b[i] })
+    }
+    #[inline(always)]
+    fn le(self, a: Self::F, b: Self::F) -> u32 {
+        (0..WIDTH).fold(0, |mask, i| mask | u32::from(a[i] <= b[i]) << i)
+    }
+    #[inline(always)]
+    fn lt(self, a: Self::F, b: Self::F) -> u32 {
+        (0..WIDTH).fold(0, |mask, i| mask | u32::from(a[i] < b[i]) << i)
+    }
+    #[inline(always)]
+    fn prefetch<T>(self, _value: &T) {}
+}
+
+#[cfg(target_arch = "x86_64")]
+pub(super) use avx2::Avx2;
+
+#[cfg(target_arch = "x86_64")]
+mod avx2 {
+    use std::arch::x86_64::*;
+
+    use super::{Simd, WIDTH};
+
+    /// Proof that this processor has AVX2, BMI1, BMI2 and LZCNT.
+    #[derive(Clone, Copy, Debug)]
+    pub(in crate::bvh) struct Avx2(());
+
+    impl Avx2 {
+        pub fn detect() -> Option<Self> {
+            let found = is_x86_feature_detected!("avx2")
+                && is_x86_feature_detected!("bmi1")
+                && is_x86_feature_detected!("bmi2")
+                && is_x86_feature_detected!("lzcnt");
+            found.then_some(Self(()))
+        }
+    }
+
+    /// Calls an intrinsic.
+    macro_rules! avx2 {
+        ($call:expr) => {
+            // SAFETY: an `Avx2` exists only where AVX2 was detected, and loads and stores are through references.
+            unsafe { $call }
+        };
+    }
+
+    impl Simd for Avx2 {
+        type F = __m256;
+
+        #[inline(always)]
+        fn splat(self, x: f32) -> Self::F {
+            avx2!(_mm256_set1_ps(x))
+        }
+        #[inline(always)]
+        fn load(self, x: &[f32; WIDTH]) -> Self::F {
+            avx2!(_mm256_loadu_ps(x.as_ptr()))
+        }
+        #[inline(always)]
+        fn to_array(self, x: Self::F) -> [f32; WIDTH] {
+            let mut array = [0.0; WIDTH];
+            avx2!(_mm256_storeu_ps(array.as_mut_ptr(), x));
+            array
+        }
+        #[inline(always)]
+        fn add(self, a: Self::F, b: Self::F) -> Self::F {
+            avx2!(_mm256_add_ps(a, b))
+        }
+        #[inline(always)]
+        fn sub(self, a: Self::F, b: Self::F) -> Self::F {
+            avx2!(_mm256_sub_ps(a, b))
+        }
+        #[inline(always)]
+        fn mul(self, a: Self::F, b: Self::F) -> Self::F {
+            avx2!(_mm256_mul_ps(a, b))
+        }
+        #[inline(always)]
+        fn div(self, a: Self::F, b: Self::F) -> Self::F {
+            avx2!(_mm256_div_ps(a, b))
+        }
+        #[inline(always)]
+        fn min(self, a: Self::F, b: Self::F) -> Self::F {
+            avx2!(_mm256_min_ps(a, b))
+        }
+        #[inline(always)]
+        fn max(self, a: Self::F, b: Self::F) -> Self::F {
+            avx2!(_mm256_max_ps(a, b))
+        }
+        #[inline(always)]
+        fn le(self, a: Self::F, b: Self::F) -> u32 {
+            avx2!(_mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(a, b)) as u32)
+        }
+        #[inline(always)]
+        fn lt(self, a: Self::F, b: Self::F) -> u32 {
+            avx2!(_mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LT_OQ>(a, b)) as u32)
+        }
+        #[inline(always)]
+        fn prefetch<T>(self, value: &T) {
+            let start = std::ptr::from_ref(value).cast::<i8>();
+            for offset in (0..size_of::<T>()).step_by(64) {
+                avx2!(_mm_prefetch::<_MM_HINT_T0>(start.add(offset)));
+            }
+        }
+    }
+}
+
+/// The instruction set that traversal uses, chosen when the tree is built.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Kernel {
+    #[cfg(target_arch = "x86_64")]
+    Avx2(Avx2),
+    Portable(Portable),
+}
+
+impl Kernel {
+    pub fn detect() -> Self {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(avx2) = Avx2::detect() {
+            return Self::Avx2(avx2);
+        }
+        Self::Portable(Portable)
+    }
+}

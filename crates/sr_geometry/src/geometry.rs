@@ -1,0 +1,332 @@
+//! The compiled geometry: flat arrays, and trees over them.
+
+use std::ops::Range;
+
+use glam::{DVec3, Vec2, Vec3};
+use rayon::prelude::*;
+
+use crate::bvh::{Bvh, MAX_INDEX, PrimRef, Tree};
+use crate::instance::PlacedGroup;
+use crate::{
+    Bounds3, Disk, GeometryError, GeometryInput, Hit, NO_INSTANCE, Ray, Shape, ShapeId, Sphere, TriangleMesh,
+};
+
+/// Shapes, groups and instances behind one bounding volume hierarchy; read-only.
+#[derive(Debug)]
+pub struct Geometry {
+    shapes: Vec<ShapeRecord>,
+    /// Vertices and triangles of all meshes, one mesh after another.
+    positions: Vec<Vec3>,
+    normals: Vec<Vec3>,
+    uvs: Vec<Vec2>,
+    triangles: Vec<[u32; 3]>,
+    spheres: Vec<Sphere>,
+    disks: Vec<Disk>,
+    instances: Vec<PlacedGroup>,
+    others: Vec<Other>,
+    bvh: Bvh,
+    world: Tree,
+    groups: Vec<Tree>,
+}
+
+/// Where a shape is in the arrays.
+#[derive(Clone, Copy, Debug)]
+enum ShapeRecord {
+    Mesh(MeshRecord),
+    Sphere(u32),
+    Disk(u32),
+}
+
+/// Where a mesh is in the arrays. Its vertex indices count from `first_vertex`.
+#[derive(Clone, Copy, Debug)]
+struct MeshRecord {
+    first_triangle: u32,
+    triangles: u32,
+    first_vertex: u32,
+    /// `None`: flat shading.
+    first_normal: Option<u32>,
+    /// `None`: barycentric coordinates.
+    first_uv: Option<u32>,
+}
+
+/// A primitive of the tree that is not a triangle.
+#[derive(Clone, Copy, Debug)]
+enum Other {
+    Sphere { shape: ShapeId, index: u32 },
+    Disk { shape: ShapeId, index: u32 },
+    Instance(u32),
+}
+
+/// A compiled shape, in the space of its list.
+#[derive(Clone, Copy, Debug)]
+pub enum ShapeRef<'a> {
+    /// A mesh, of [`Geometry::primitive_count`] triangles.
+    Mesh,
+    /// A sphere.
+    Sphere(&'a Sphere),
+    /// A disk.
+    Disk(&'a Disk),
+}
+
+impl Geometry {
+    /// Copies the shapes and builds their trees, on the threads of the current Rayon pool.
+    pub fn build(input: GeometryInput<'_>) -> Result<Self, GeometryError> {
+        let all = || input.shapes.iter().chain(input.groups.iter().flatten());
+        check_counts(all(), input.instances.len())?;
+        let shapes: Vec<_> = all().collect();
+        let checks = shapes.par_iter().enumerate().map(|(i, shape)| shape.validate(i as u32));
+        checks.find_first(Result::is_err).unwrap_or(Ok(()))?;
+        let groups = input.groups.len();
+        let placed = input.instances.iter().enumerate();
+        let instances =
+            placed.map(|(i, instance)| PlacedGroup::new(i, instance, groups)).collect::<Result<_, _>>()?;
+        let mut geometry = Self {
+            shapes: Vec::new(),
+            positions: Vec::new(),
+            normals: Vec::new(),
+            uvs: Vec::new(),
+            triangles: Vec::new(),
+            spheres: Vec::new(),
+            disks: Vec::new(),
+            instances,
+            others: Vec::new(),
+            bvh: Bvh::new(),
+            world: Tree::EMPTY,
+            groups: Vec::new(),
+        };
+        shapes.into_iter().for_each(|shape| geometry.store(shape));
+        geometry.build_trees(&input);
+        Ok(geometry)
+    }
+
+    fn store(&mut self, shape: &Shape<'_>) {
+        let record = match shape {
+            Shape::Mesh(mesh) => ShapeRecord::Mesh(self.store_mesh(mesh)),
+            Shape::Sphere(sphere) => {
+                self.spheres.push(*sphere);
+                ShapeRecord::Sphere(self.spheres.len() as u32 - 1)
+            }
+            Shape::Disk(disk) => {
+                self.disks.push(*disk);
+                ShapeRecord::Disk(self.disks.len() as u32 - 1)
+            }
+        };
+        self.shapes.push(record);
+    }
+
+    fn store_mesh(&mut self, mesh: &TriangleMesh<'_>) -> MeshRecord {
+        let record = MeshRecord {
+            first_triangle: self.triangles.len() as u32,
+            triangles: mesh.triangles.len() as u32,
+            first_vertex: self.positions.len() as u32,
+            first_normal: (!mesh.normals.is_empty()).then_some(self.normals.len() as u32),
+            first_uv: (!mesh.uvs.is_empty()).then_some(self.uvs.len() as u32),
+        };
+        self.positions.extend_from_slice(mesh.positions);
+        self.normals.extend_from_slice(mesh.normals);
+        self.uvs.extend_from_slice(mesh.uvs);
+        self.triangles.extend_from_slice(mesh.triangles);
+        record
+    }
+
+    /// The groups' trees first: instances need their boxes.
+    fn build_trees(&mut self, input: &GeometryInput<'_>) {
+        let mut first = input.shapes.len();
+        for group in &input.groups {
+            let mut prims = self.prim_refs(first..first + group.len());
+            first += group.len();
+            let tree = self.build_tree(&mut prims);
+            self.groups.push(tree);
+        }
+        let mut prims = self.prim_refs(0..input.shapes.len());
+        for (i, instance) in self.instances.iter().enumerate() {
+            let bounds = instance.bounds(&self.groups[instance.group as usize]);
+            if !bounds.is_empty() {
+                prims.push(PrimRef { bounds, shape: PrimRef::OTHER, primitive: self.others.len() as u32 });
+                self.others.push(Other::Instance(i as u32));
+            }
+        }
+        self.world = self.build_tree(&mut prims);
+    }
+
+    fn build_tree(&mut self, prims: &mut [PrimRef]) -> Tree {
+        let mut bvh = std::mem::replace(&mut self.bvh, Bvh::new());
+        let tree = bvh.add_tree(prims, |shape, triangle| self.triangle_vertices(shape, triangle));
+        self.bvh = bvh;
+        tree
+    }
+
+    /// What the tree over these shapes is built from. Triangles without an area are left out.
+    fn prim_refs(&mut self, shapes: Range<usize>) -> Vec<PrimRef> {
+        let mut prims = Vec::new();
+        for i in shapes {
+            let shape = ShapeId(i as u32);
+            let (bounds, other) = match self.shapes[i] {
+                ShapeRecord::Mesh(mesh) => {
+                    prims.par_extend((0..mesh.triangles).into_par_iter().filter_map(|triangle| {
+                        let vertices = self.triangle_vertices(shape, triangle);
+                        let bounds = vertices.into_iter().fold(Bounds3::EMPTY, Bounds3::with);
+                        has_area(vertices).then_some(PrimRef { bounds, shape: shape.0, primitive: triangle })
+                    }));
+                    continue;
+                }
+                ShapeRecord::Sphere(index) => {
+                    (self.spheres[index as usize].bounds(), Other::Sphere { shape, index })
+                }
+                ShapeRecord::Disk(index) => {
+                    (self.disks[index as usize].bounds(), Other::Disk { shape, index })
+                }
+            };
+            prims.push(PrimRef { bounds, shape: PrimRef::OTHER, primitive: self.others.len() as u32 });
+            self.others.push(other);
+        }
+        prims
+    }
+
+    /// The closest hit, if any.
+    #[inline]
+    pub fn intersect(&self, ray: &Ray) -> Option<Hit> {
+        self.bvh.intersect(&self.world, ray, |other, ray| self.intersect_other(other, ray))
+    }
+
+    /// Does the ray hit anything?
+    #[inline]
+    pub fn occluded(&self, ray: &Ray) -> bool {
+        self.bvh.occluded(&self.world, ray, |other, ray| self.intersect_other(other, ray))
+    }
+
+    /// Out of line, so that the walk over triangles stays small.
+    #[inline(never)]
+    fn intersect_other(&self, other: u32, ray: &Ray) -> Option<Hit> {
+        match self.others[other as usize] {
+            Other::Sphere { shape, index } => {
+                let t = self.spheres[index as usize].intersect(ray)?;
+                Some(Hit { t, b1: 0.0, b2: 0.0, shape, primitive: 0, instance: NO_INSTANCE })
+            }
+            Other::Disk { shape, index } => {
+                let (t, at) = self.disks[index as usize].intersect(ray)?;
+                Some(Hit { t, b1: at.x, b2: at.y, shape, primitive: 0, instance: NO_INSTANCE })
+            }
+            Other::Instance(instance) => {
+                let placed = &self.instances[instance as usize];
+                let tree = &self.groups[placed.group as usize];
+                let hit = self
+                    .bvh
+                    .intersect(tree, &placed.to_group(ray), |other, ray| self.intersect_other(other, ray));
+                hit.map(|hit| Hit { instance, ..hit })
+            }
+        }
+    }
+
+    /// The box around everything; empty for an empty scene.
+    pub fn bounds(&self) -> Bounds3 {
+        self.world.bounds
+    }
+
+    /// Number of shapes in the world and in groups.
+    pub fn shape_count(&self) -> u32 {
+        self.shapes.len() as u32
+    }
+
+    /// The shape itself, in the space of its list.
+    #[inline]
+    pub fn shape_of(&self, shape: ShapeId) -> ShapeRef<'_> {
+        match self.shapes[shape.0 as usize] {
+            ShapeRecord::Mesh(_) => ShapeRef::Mesh,
+            ShapeRecord::Sphere(index) => ShapeRef::Sphere(&self.spheres[index as usize]),
+            ShapeRecord::Disk(index) => ShapeRef::Disk(&self.disks[index as usize]),
+        }
+    }
+
+    /// Triangles of a mesh; 1 for spheres and disks.
+    pub fn primitive_count(&self, shape: ShapeId) -> u32 {
+        match self.shapes[shape.0 as usize] {
+            ShapeRecord::Mesh(mesh) => mesh.triangles,
+            ShapeRecord::Sphere(_) | ShapeRecord::Disk(_) => 1,
+        }
+    }
+
+    /// A triangle's vertices, in the space of its list. Panics if `shape` is no mesh.
+    #[inline]
+    pub fn triangle_vertices(&self, shape: ShapeId, triangle: u32) -> [Vec3; 3] {
+        let mesh = self.mesh(shape);
+        self.indices(mesh, triangle).map(|i| self.positions[(mesh.first_vertex + i) as usize])
+    }
+
+    /// A triangle's vertex normals, if the mesh has any. Panics if `shape` is no mesh.
+    #[inline]
+    pub fn triangle_normals(&self, shape: ShapeId, triangle: u32) -> Option<[Vec3; 3]> {
+        let mesh = self.mesh(shape);
+        let first = mesh.first_normal?;
+        Some(self.indices(mesh, triangle).map(|i| self.normals[(first + i) as usize]))
+    }
+
+    /// A triangle's texture coordinates, if the mesh has any. Panics if `shape` is no mesh.
+    #[inline]
+    pub fn triangle_uvs(&self, shape: ShapeId, triangle: u32) -> Option<[Vec2; 3]> {
+        let mesh = self.mesh(shape);
+        let first = mesh.first_uv?;
+        Some(self.indices(mesh, triangle).map(|i| self.uvs[(first + i) as usize]))
+    }
+
+    #[inline]
+    fn mesh(&self, shape: ShapeId) -> &MeshRecord {
+        match &self.shapes[shape.0 as usize] {
+            ShapeRecord::Mesh(mesh) => mesh,
+            other => panic!("shape {} is no mesh but {other:?}", shape.0),
+        }
+    }
+
+    #[inline]
+    fn indices(&self, mesh: &MeshRecord, triangle: u32) -> [u32; 3] {
+        debug_assert!(triangle < mesh.triangles);
+        self.triangles[(mesh.first_triangle + triangle) as usize]
+    }
+
+    /// The instance with this index; `None` for [`NO_INSTANCE`].
+    #[inline]
+    pub(crate) fn placed(&self, instance: u32) -> Option<&PlacedGroup> {
+        if instance == NO_INSTANCE { None } else { Some(&self.instances[instance as usize]) }
+    }
+
+    /// Bytes of all arrays.
+    pub fn memory_bytes(&self) -> usize {
+        size_of_val(&self.shapes[..])
+            + size_of_val(&self.positions[..])
+            + size_of_val(&self.normals[..])
+            + size_of_val(&self.uvs[..])
+            + size_of_val(&self.triangles[..])
+            + size_of_val(&self.spheres[..])
+            + size_of_val(&self.disks[..])
+            + size_of_val(&self.instances[..])
+            + size_of_val(&self.others[..])
+            + self.bvh.memory_bytes()
+    }
+}
+
+/// Refuses what indices of 32 bits cannot tell apart.
+fn check_counts<'a>(
+    shapes: impl Iterator<Item = &'a Shape<'a>>,
+    instances: usize,
+) -> Result<(), GeometryError> {
+    let (mut count, mut triangles, mut vertices) = (0, 0, 0);
+    for shape in shapes {
+        count += 1;
+        if let Shape::Mesh(mesh) = shape {
+            triangles += mesh.triangles.len();
+            vertices += mesh.positions.len();
+        }
+    }
+    let counts =
+        [("triangles", triangles), ("vertices", vertices), ("shapes and instances", count + instances)];
+    match counts.into_iter().find(|&(_, count)| count > MAX_INDEX) {
+        Some((what, count)) => Err(GeometryError::TooMany { what, count, limit: MAX_INDEX }),
+        None => Ok(()),
+    }
+}
+
+/// Is the triangle more than a line or a point? Edges and their products are (nearly) exact in `f64`.
+fn has_area(vertices: [Vec3; 3]) -> bool {
+    let [a, b, c] = vertices.map(|v| v.as_dvec3());
+    (b - a).cross(c - a) != DVec3::ZERO
+}
