@@ -1,6 +1,7 @@
 //! The one abstraction: a probability density that can be sampled and evaluated.
 
 use crate::measure::Measure;
+use crate::uniforms::Uniforms;
 
 /// A sampled point with the density it was drawn with.
 ///
@@ -27,7 +28,7 @@ pub trait Distribution {
     /// What the density is a density of.
     type Measure: Measure;
     /// The uniforms in [0, 1) that one sample consumes.
-    type Uniform: Copy;
+    type Uniform: Uniforms;
 
     /// Draws a point. `None` contributes nothing to an estimate; it is not an error.
     fn sample(&self, u: Self::Uniform) -> Option<Sample<Self::Measure>>;
@@ -52,5 +53,12 @@ impl<D: Distribution + ?Sized> Distribution for &D {
     #[inline]
     fn pdf(&self, x: PointOf<Self>) -> RealOf<Self> {
         (**self).pdf(x)
+    }
+}
+
+impl<D: Invert + ?Sized> Invert for &D {
+    #[inline]
+    fn invert(&self, x: PointOf<Self>) -> Option<Self::Uniform> {
+        (**self).invert(x)
     }
 }

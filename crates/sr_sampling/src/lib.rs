@@ -5,14 +5,20 @@
 //! [`mis_estimate`] combine several. Nothing here knows rendering.
 
 pub mod distribution;
+pub mod estimate;
 pub mod measure;
 pub mod mis;
 pub mod mixture;
 pub mod sequence;
+pub mod table;
+pub mod uniforms;
 pub mod warp;
 
 pub use distribution::{Distribution, Invert, PointOf, RealOf, Sample};
+pub use estimate::{Accumulator, Estimate};
 pub use measure::{Area, Counting, Lebesgue, Line, Measure, Plane, Real, SolidAngle, to_solid_angle};
-pub use mis::{balance_weight, mis_estimate, power_weight};
+pub use mis::{Heuristic, UnknownHeuristic, balance_weight, mis_estimate, power_weight};
 pub use mixture::{Mix2, Mixture, MixtureError};
 pub use sequence::{Cursor, Independent, OwenSobol, SampleId, Sequence, SequenceKind, UnknownSequence};
+pub use table::{AliasTable, Discrete, PiecewiseConstant1D, PiecewiseConstant2D, TableError};
+pub use uniforms::Uniforms;

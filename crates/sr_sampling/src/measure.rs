@@ -54,22 +54,22 @@ pub trait Measure: Copy + Debug {
 }
 
 /// Length on the real line.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Line;
 /// Area in the plane, points being coordinates.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Plane;
 /// Solid angle, in steradians; points are unit vectors.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SolidAngle;
 /// Surface area in space; points are positions.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Area;
 /// The number of elements; densities are probabilities, points are indices.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Counting;
 /// Volume in N dimensions, in double precision.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lebesgue<const N: usize>;
 
 impl Measure for Line {

@@ -1,5 +1,9 @@
 //! Multiple importance sampling: several densities, one estimate (Veach & Guibas 1995).
 
+mod heuristic;
+
+pub use heuristic::{Heuristic, UnknownHeuristic};
+
 use crate::distribution::{Distribution, PointOf};
 use crate::measure::Real;
 
@@ -49,4 +53,45 @@ where
         f(s.value) * weigh(p_q, p.pdf(s.value).to_f64()) / p_q
     });
     from_p + from_q
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use glam::Vec2;
+
+    use super::*;
+    use crate::sequence::{OwenSobol, SampleId, Sequence};
+    use crate::warp::{CosineHemisphere, UniformHemisphere};
+
+    #[test]
+    fn weights_at_the_limits() {
+        for weight in [balance_weight, power_weight] {
+            assert_eq!(weight(0.0, 1.0), 0.0);
+            assert_eq!(weight(1.0, 0.0), 1.0);
+            assert_eq!(weight(2.0, 2.0), 0.5);
+            assert_eq!(weight(f32::INFINITY, 1.0), 1.0);
+            assert_eq!(weight(1.0, f32::INFINITY), 0.0);
+        }
+        assert_eq!(balance_weight(1.0, 3.0), 0.25);
+        assert_eq!(power_weight(1.0, 3.0), 0.1);
+        assert_eq!(power_weight(3e30, 1e30), 0.9);
+    }
+
+    /// ∫ cos²θ dω over the hemisphere is 2π/3, from a technique above it and one below.
+    #[test]
+    fn the_estimate_converges_to_the_integral() {
+        let sequence = OwenSobol::new(5);
+        let n = 1 << 14;
+        let mean = (0..n)
+            .map(|index| {
+                let at = SampleId { pixel: 0, index };
+                let u: (Vec2, Vec2) = (sequence.get_2d(at, 0), sequence.get_2d(at, 2));
+                mis_estimate(|w| f64::from(w.z * w.z), &UniformHemisphere, &CosineHemisphere, u)
+            })
+            .sum::<f64>()
+            / f64::from(n);
+        assert!((mean - 2.0 * PI / 3.0).abs() < 2e-4, "{mean}");
+    }
 }
