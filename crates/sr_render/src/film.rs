@@ -37,7 +37,9 @@ pub const MAX_PIXELS: u64 = 1 << 27;
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum FilmError {
     /// Zero or too many pixels.
-    #[error("a film of {width} × {height} pixels is not possible; at least 1 and at most {MAX_PIXELS} pixels are")]
+    #[error(
+        "a film of {width} × {height} pixels is not possible; at least 1 and at most {MAX_PIXELS} pixels are"
+    )]
     Size {
         /// Pixels across.
         width: u32,
@@ -167,7 +169,11 @@ impl Film {
         loop {
             let left = match at {
                 at if at > 0 && self.blocks[at - 1].is_left_sibling_of(&self.blocks[at]) => at - 1,
-                at if at + 1 < self.blocks.len() && self.blocks[at].is_left_sibling_of(&self.blocks[at + 1]) => at,
+                at if at + 1 < self.blocks.len()
+                    && self.blocks[at].is_left_sibling_of(&self.blocks[at + 1]) =>
+                {
+                    at
+                }
                 _ => return Ok(()),
             };
             let right = self.blocks.remove(left + 1);

@@ -12,8 +12,8 @@
 use std::fmt;
 use std::str::FromStr;
 
-use sr_sampling::mixture::{MixtureError, check_weights};
 use sr_sampling::Heuristic;
+use sr_sampling::mixture::{MixtureError, check_weights};
 use thiserror::Error;
 
 /// A density over directions that needs nothing but the shading point.
@@ -178,7 +178,13 @@ impl fmt::Display for Density {
         let terms: Vec<String> = Basic::ALL
             .into_iter()
             .filter(|&b| self.weight(b) > 0.0)
-            .map(|b| if self.weight(b) == 1.0 { b.name().into() } else { format!("{} {}", self.weight(b), b.name()) })
+            .map(|b| {
+                if self.weight(b) == 1.0 {
+                    b.name().into()
+                } else {
+                    format!("{} {}", self.weight(b), b.name())
+                }
+            })
             .collect();
         f.write_str(&terms.join(" + "))
     }

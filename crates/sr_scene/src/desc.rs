@@ -55,6 +55,12 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { max_depth: None, roulette_depth: Some(5), spp: 64, hide_emitters: false, span: Span::default() }
+        Self {
+            max_depth: None,
+            roulette_depth: Some(5),
+            spp: 64,
+            hide_emitters: false,
+            span: Span::default(),
+        }
     }
 }

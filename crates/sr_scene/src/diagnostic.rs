@@ -42,6 +42,57 @@ pub struct Diagnostic {
     pub consequence: Option<String>,
 }
 
+impl Diagnostic {
+    /// An error: there will be no scene.
+    pub fn error(code: &'static str, span: &Span, message: impl Into<String>) -> Self {
+        Self::new(Severity::Error, code, span, message.into())
+    }
+
+    /// A warning: the scene is rendered, but not quite as asked.
+    pub fn warning(code: &'static str, span: &Span, message: impl Into<String>) -> Self {
+        Self::new(Severity::Warning, code, span, message.into())
+    }
+
+    fn new(severity: Severity, code: &'static str, span: &Span, message: String) -> Self {
+        Self { severity, code, message, span: span.clone(), hint: None, consequence: None }
+    }
+
+    /// Adds what is shown at the place.
+    pub fn hint(mut self, hint: impl Into<String>) -> Self {
+        self.hint = Some(hint.into());
+        self
+    }
+
+    /// Adds the name among `candidates` that `name` was probably meant to be, if one is close.
+    pub fn guess<'a>(mut self, name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Self {
+        if let Some(best) = nearest_name(name, candidates) {
+            self.hint = Some(format!("did you mean \"{best}\"?"));
+        }
+        self
+    }
+
+    /// Adds what happens instead.
+    pub fn consequence(mut self, consequence: impl Into<String>) -> Self {
+        self.consequence = Some(consequence.into());
+        self
+    }
+}
+
+/// The candidate nearest to `name`, unless all are too far to be a slip of the keyboard.
+fn nearest_name<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    // Names of hundreds of characters are not typing errors; comparing them costs their product.
+    if name.len() > 64 {
+        return None;
+    }
+    candidates
+        .into_iter()
+        .filter(|c| c.len() <= 64)
+        .map(|c| (strsim::normalized_damerau_levenshtein(&name.to_lowercase(), &c.to_lowercase()), c))
+        .filter(|&(score, _)| score >= 0.6)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, c)| c)
+}
+
 /// The texts that spans point into.
 #[derive(Clone, Debug, Default)]
 pub struct Sources {
@@ -60,10 +111,21 @@ impl Sources {
         self.files.get(id.0 as usize).map_or(("", ""), |(name, text)| (name, text))
     }
 
+    /// The number of sources.
+    pub fn len(&self) -> usize {
+        self.files.len()
+    }
+
+    /// Is there no source?
+    pub fn is_empty(&self) -> bool {
+        self.files.is_empty()
+    }
+
     /// One-based line and column of the start of a span.
     pub fn line_column(&self, span: &Span) -> (usize, usize) {
         let text = self.get(span.source).1;
-        let end = (0..=span.bytes.start.min(text.len())).rev().find(|&i| text.is_char_boundary(i)).unwrap_or(0);
+        let end =
+            (0..=span.bytes.start.min(text.len())).rev().find(|&i| text.is_char_boundary(i)).unwrap_or(0);
         let before = &text[..end];
         let line_start = before.rfind('\n').map_or(0, |i| i + 1);
         (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1)
@@ -80,6 +142,11 @@ pub struct Diagnostics {
 }
 
 impl Diagnostics {
+    /// Adds one.
+    pub fn push(&mut self, diagnostic: Diagnostic) {
+        self.list.push(diagnostic);
+    }
+
     /// Is there an error among them?
     pub fn has_errors(&self) -> bool {
         self.list.iter().any(|d| d.severity == Severity::Error)

@@ -1,7 +1,7 @@
 //! What a scene is, before it is compiled: plain data that a person can edit and Python can build.
 //!
-//! In: nothing. Out: [`SceneDesc`], [`Diagnostic`],. No file format, no ray, no
-//! sampling algorithm lives here.
+//! In: whatever a front end has read. Out: [`SceneDesc`] that [`validate`] has nothing to say against, and
+//! [`Diagnostics`] with two renderings. No file format, no ray, no sampling algorithm lives here.
 
 pub mod camera;
 pub mod desc;
@@ -9,8 +9,10 @@ pub mod diagnostic;
 pub mod image;
 pub mod light;
 pub mod material;
+mod report;
 pub mod shape;
 pub mod texture;
+mod validate;
 
 pub use camera::{CameraDesc, FilmDesc, FilterDesc, FovAxis};
 pub use desc::{MaterialId, SceneDesc, Settings, TextureId};
@@ -20,6 +22,7 @@ pub use light::LightDesc;
 pub use material::{ColorInput, MaterialDesc, MicrofacetKind, ScalarInput};
 pub use shape::{Emission, Geometry, GroupDesc, InstanceDesc, MeshDesc, ShapeDesc};
 pub use texture::{Filter, TextureDesc, Wrap};
+pub use validate::{MAX_FILM_PIXELS, validate};
 
 /// Linear RGB: radiance, reflectance or importance.
 pub type Rgb = glam::Vec3;

@@ -11,7 +11,7 @@ pub enum ColorInput {
     Texture(TextureId),
 }
 
-/// A number, constant or textured (then the mean of the texture's channels).
+/// A number, constant or textured (then the luminance of the texture, Rec. 709 weights).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ScalarInput {
     /// The same everywhere.
@@ -136,4 +136,3 @@ pub enum MaterialDesc {
         inner: MaterialId,
     },
 }
-

@@ -30,12 +30,15 @@ pub enum Geometry {
         center: Vec3,
         /// Radius, positive.
         radius: f32,
-        /// Rotation of the parametrisation: world-space +X, +Y, +Z of the sphere's own frame.
+        /// Orientation of the parametrisation: world-space +X, +Y, +Z of the sphere's own frame,
+        /// orthonormal; a mirrored frame is allowed and leaves the normals outward.
         frame: glam::Mat3,
         /// Do normals point inwards?
         flip_normals: bool,
     },
     /// A flat disk or ellipse: centre ± `u_axis` ± `v_axis`, normal along `u_axis` × `v_axis`.
+    ///
+    /// Its (u, v) are (r, φ / 2π): r = 0 at the centre and 1 on the rim, φ from `u_axis` towards `v_axis`.
     Disk {
         /// Centre.
         center: Vec3,

@@ -17,7 +17,8 @@ pub enum TextureDesc {
         wrap: Wrap,
         /// Are 8-bit values sRGB-encoded (colours), or linear already (roughness, bump, masks)?
         srgb: bool,
-        /// Applied to the surface's (u, v) first. v = 0 is then the *bottom* row of the image.
+        /// Applied to the surface's (u, v) first. v = 0 is then the *top* row of the image: importers turn
+        /// the coordinates of formats that count from the bottom.
         to_uv: Affine2,
         /// Where it was described.
         span: Span,
