@@ -77,3 +77,50 @@ fn visible_slope(cos: f32, sin: f32, u: f32) -> f32 {
 const TOLERANCE: f32 = 2e-7;
 /// Newton needs about five; bisection alone would end at `f32`'s precision after this many.
 const MAX_ITERATIONS: usize = 24;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The distribution function of the visible slope, by the midpoint rule in double precision.
+    fn slopes_below(x: f64, cos: f64, sin: f64) -> f64 {
+        let integral = |to: f64| {
+            let (from, n) = (-6.0, 20_000);
+            let step = (to.min(6.0) - from) / f64::from(n);
+            let at = |i| from + (f64::from(i) + 0.5) * step;
+            (0..n).map(|i| (cos - at(i) * sin) * (-at(i) * at(i)).exp()).sum::<f64>() * step
+        };
+        integral(x) / integral(cos / sin)
+    }
+
+    #[test]
+    fn visible_slopes_invert_their_distribution_function() {
+        for cos in [0.999_f32, 0.9, 0.5, 0.1, 0.01, 1e-4] {
+            let sin = (1.0 - cos * cos).sqrt();
+            for u in [1e-4, 0.01, 0.2, 0.5, 0.8, 0.99, 0.9999] {
+                let x = visible_slope(cos, sin, u);
+                let back = slopes_below(f64::from(x), f64::from(cos), f64::from(sin));
+                assert!((back - f64::from(u)).abs() < 2e-6, "cos = {cos}, u = {u}: x = {x}, {back}");
+            }
+        }
+    }
+
+    #[test]
+    fn visible_slopes_increase_with_the_uniform() {
+        for cos in [1.0_f32, 0.7, 0.2, 1e-3, 1e-10] {
+            let sin = (1.0 - cos * cos).sqrt();
+            let slopes: Vec<f32> = (0..1000).map(|i| visible_slope(cos, sin, i as f32 / 1000.0)).collect();
+            assert!(slopes.iter().all(|x| x.is_finite()));
+            assert!(slopes.windows(2).all(|pair| pair[0] <= pair[1] + 1e-4), "cos = {cos}");
+        }
+    }
+
+    /// Heitz 2014, table 1: Λ(a) at a = 1 is (erf(1) − 1) / 2 + exp(−1) / (2 √π).
+    #[test]
+    fn projected_area_at_the_slope_of_the_surface() {
+        let lambda = 0.5 * (0.842_700_8 - 1.0) + 0.367_879_44 * 0.5 * FRAC_1_SQRT_PI;
+        assert!((projected_area(0.5, 0.5) - 0.5 * (1.0 + lambda)).abs() < 1e-6);
+        assert_eq!(projected_area(1.0, 0.0), 1.0);
+        assert!((projected_area(0.0, 0.3) - 0.15 * FRAC_1_SQRT_PI).abs() < 1e-7);
+    }
+}

@@ -52,3 +52,31 @@ pub(crate) fn erf_inv(y: f32) -> f32 {
     };
     scale * y
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Abramowitz & Stegun 1964, table 7.1.
+    #[test]
+    fn erf_matches_tabulated_values() {
+        for (x, erf) in
+            [(0.0, 0.0), (0.1, 0.112_462_916), (0.5, 0.520_499_9), (1.0, 0.842_700_8), (2.0, 0.995_322_3)]
+        {
+            assert!((erf_exp(x).0 - erf).abs() < 3e-7, "erf({x}) = {}", erf_exp(x).0);
+        }
+        assert!((erf_exp(1.0).1 - 0.367_879_44).abs() < 1e-7);
+    }
+
+    #[test]
+    fn the_inverse_inverts() {
+        for i in 0..300 {
+            let x = i as f32 * 0.01;
+            let y = erf_exp(x).0;
+            // erf rounds to 6 · 10⁻⁸ and is off by 1.5 · 10⁻⁷; its slope is 2 exp(−x²) / √π.
+            let tolerance = 4e-7 * (x * x).exp() + 1e-6;
+            assert!((erf_inv(y) - x).abs() < tolerance, "{x} {y} {}", erf_inv(y));
+            assert_eq!(erf_inv(-y), -erf_inv(y));
+        }
+    }
+}

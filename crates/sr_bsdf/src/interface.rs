@@ -115,3 +115,113 @@ pub fn reflect_about(w: Vec3, m: Vec3) -> Vec3 {
 pub fn refract_about(w: Vec3, m: Vec3, split: DielectricSplit) -> Vec3 {
     (w.dot(m) / split.eta - split.cos_t) * m - w / split.eta
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fresnel_at_normal_incidence_is_the_squared_contrast() {
+        for eta in [1.1_f32, 1.5, 2.4, 0.7] {
+            let expected = ((eta - 1.0) / (eta + 1.0)).powi(2);
+            assert!((dielectric(1.0, eta).reflectance - expected).abs() < 1e-7);
+            assert!((dielectric(-1.0, eta).reflectance - expected).abs() < 1e-7);
+        }
+    }
+
+    /// At Brewster's angle, tan θ = η, parallel light is not reflected, and reflection and refraction
+    /// are at right angles.
+    #[test]
+    fn brewsters_angle() {
+        let eta = 1.5_f32;
+        let cos = 1.0 / (1.0 + eta * eta).sqrt();
+        let split = dielectric(cos, eta);
+        let s = (cos - eta * split.cos_t) / (cos + eta * split.cos_t);
+        assert!((split.reflectance - 0.5 * s * s).abs() < 1e-7);
+        assert!((split.cos_t - (1.0 - cos * cos).sqrt()).abs() < 1e-6);
+    }
+
+    #[test]
+    fn reflection_is_total_beyond_the_critical_angle() {
+        let critical = (1.0 - 1.0 / 1.5_f32.powi(2)).sqrt();
+        assert_eq!(dielectric(-critical * 0.999, 1.5).reflectance, 1.0);
+        assert!(dielectric(-critical * 1.001, 1.5).reflectance < 0.9);
+    }
+
+    #[test]
+    fn an_interface_between_equal_media_is_not_there() {
+        for cos in [1.0, 0.3, 1e-20, 0.0] {
+            assert_eq!(dielectric(cos, 1.0), DielectricSplit { reflectance: 0.0, cos_t: cos, eta: 1.0 });
+            assert!(dielectric(cos, 1.0 + f32::EPSILON).reflectance.is_finite());
+        }
+    }
+
+    /// Light takes the same split in either direction.
+    #[test]
+    fn fresnel_is_symmetric() {
+        for i in 10..100 {
+            let cos = i as f32 / 100.0;
+            let there = dielectric(cos, 1.5);
+            let back = dielectric(-there.cos_t, 1.5);
+            assert!((there.reflectance - back.reflectance).abs() < 1e-5, "{cos}: {there:?} {back:?}");
+            assert!((back.cos_t - cos).abs() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn refraction_obeys_snell() {
+        let m = Vec3::new(0.36, 0.48, 0.8);
+        let w = Vec3::new(-0.48, 0.6, 0.64);
+        let split = dielectric(w.dot(m), 1.5);
+        let t = refract_about(w, m, split);
+        assert!((t.length() - 1.0).abs() < 1e-6);
+        assert!((t.cross(m) * 1.5 + w.cross(m)).length() < 1e-6); // in the plane of incidence, on the other side
+        assert!((t.dot(m) + split.cos_t).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_conductor_that_absorbs_nothing_is_a_dielectric() {
+        let eta = Rgb::new(1.2, 1.5, 2.4);
+        for i in 0..=100 {
+            let cos = i as f32 / 100.0;
+            let got = conductor(cos, eta, Rgb::ZERO);
+            let expected = Rgb::from_array(eta.to_array().map(|eta| dielectric(cos, eta).reflectance));
+            assert!((got - expected).abs().max_element() < 2e-6, "{cos}: {got} {expected}");
+        }
+    }
+
+    /// |(η + ik − 1) / (η + ik + 1)|² at normal incidence; everything at grazing.
+    #[test]
+    fn conductor_at_its_ends() {
+        let (eta, k) = (Rgb::new(0.2, 1.1, 3.0), Rgb::new(3.9, 2.5, 5.0));
+        let one = Rgb::ONE;
+        let expected = ((eta - one) * (eta - one) + k * k) / ((eta + one) * (eta + one) + k * k);
+        assert!((conductor(1.0, eta, k) - expected).abs().max_element() < 1e-6);
+        assert_eq!(conductor(0.0, eta, k), one);
+    }
+
+    #[test]
+    fn conductor_is_finite_for_any_index() {
+        for cos in [0.0, 1e-20, 0.5, 1.0] {
+            for (eta, k) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (4096.0, 4096.0), (1e-20, 1e-20)] {
+                let r = conductor(cos, Rgb::splat(eta), Rgb::splat(k));
+                assert!(r.min_element() >= 0.0 && r.max_element() <= 1.0 + 1e-6, "{cos} {eta} {k}: {r}");
+            }
+        }
+    }
+
+    #[test]
+    fn diffuse_reflectance_is_the_integral() {
+        for eta in [1.0005_f32, 1.01, 1.3, 1.5, 2.0, 4.0, 0.99, 0.75, 0.5] {
+            let n = 100_000;
+            let integral: f64 = (0..n)
+                .map(|i| (f64::from(i) + 0.5) / f64::from(n))
+                .map(|mu| 2.0 * mu * f64::from(dielectric(mu as f32, eta).reflectance))
+                .sum::<f64>()
+                / f64::from(n);
+            let got = f64::from(diffuse_reflectance(eta));
+            assert!((got - integral).abs() < 2e-6, "{eta}: {got}, not {integral}");
+        }
+        assert_eq!(diffuse_reflectance(1.0), 0.0);
+    }
+}

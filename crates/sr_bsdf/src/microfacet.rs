@@ -124,3 +124,104 @@ impl Microfacet {
         self.d(m) / (4.0 * self.projected_area(wo))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const KINDS: [MicrofacetKind; 2] = [MicrofacetKind::Beckmann, MicrofacetKind::Ggx];
+
+    /// ∫ f(m) dm over the upper hemisphere, by the midpoint rule in (θ², φ): fine near the pole.
+    fn hemisphere_integral(f: impl Fn(Vec3) -> f32) -> f64 {
+        let (n, m) = (1500, 256);
+        let mut sum = 0.0;
+        for i in 0..n {
+            let x = (f64::from(i) + 0.5) / f64::from(n);
+            let theta = x * x * std::f64::consts::FRAC_PI_2;
+            let d_theta = 2.0 * x * std::f64::consts::FRAC_PI_2 / f64::from(n);
+            for j in 0..m {
+                let phi = (f64::from(j) + 0.5) / f64::from(m) * std::f64::consts::TAU;
+                let direction = Vec3::new(
+                    (theta.sin() * phi.cos()) as f32,
+                    (theta.sin() * phi.sin()) as f32,
+                    theta.cos() as f32,
+                );
+                sum += f64::from(f(direction)) * theta.sin() * d_theta * std::f64::consts::TAU / f64::from(m);
+            }
+        }
+        sum
+    }
+
+    /// ∫ D(m) m_z dm = 1: the facets cover the surface (Walter et al. 2007, eq. 4).
+    #[test]
+    fn facets_cover_the_surface() {
+        for kind in KINDS {
+            for (x, y) in [(0.02, 0.02), (0.1, 0.1), (0.5, 0.5), (1.0, 1.0), (0.1, 0.4)] {
+                let distribution = Microfacet::new(kind, x, y);
+                let area = hemisphere_integral(|m| distribution.d(m) * m.z);
+                assert!((area - 1.0).abs() < 1e-3, "{distribution:?}: {area}");
+            }
+        }
+    }
+
+    /// ∫ max(0, w · m) D(m) dm = σ(w), what masking is defined by (Heitz 2014, eq. 14 and 20).
+    #[test]
+    fn projected_area_is_that_of_the_facets() {
+        for kind in KINDS {
+            for (x, y) in [(0.1, 0.1), (0.5, 0.5), (1.0, 1.0), (0.15, 0.4)] {
+                let distribution = Microfacet::new(kind, x, y);
+                for w in [
+                    Vec3::Z,
+                    Vec3::new(0.6, 0.0, 0.8),
+                    Vec3::new(0.36, 0.9, 0.245_8),
+                    Vec3::new(0.6, 0.8, 0.0),
+                ] {
+                    let area = hemisphere_integral(|m| distribution.d(m) * w.dot(m).max(0.0));
+                    let got = f64::from(distribution.projected_area(w));
+                    assert!((got / area - 1.0).abs() < 2e-3, "{distribution:?}, {w}: {got}, not {area}");
+                }
+            }
+        }
+    }
+
+    /// The mean of m_z over visible normals, by sampling and by the density.
+    #[test]
+    fn visible_normals_have_the_density_that_is_said() {
+        let wo = Vec3::new(0.5, -0.7, 0.509_9);
+        let n = 300;
+        for kind in KINDS {
+            let distribution = Microfacet::new(kind, 0.2, 0.5);
+            for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
+                let by_density = hemisphere_integral(|m| distribution.visible_pdf(wo, m) * m.dot(axis));
+                let at = |i: i32| (i as f32 + 0.5) / n as f32;
+                let mean = (0..n * n)
+                    .map(|i| distribution.sample_visible(wo, Vec2::new(at(i % n), at(i / n))).dot(axis))
+                    .map(f64::from)
+                    .sum::<f64>()
+                    / f64::from(n * n);
+                assert!((mean - by_density).abs() < 1e-3, "{kind:?} {axis}: {mean}, not {by_density}");
+            }
+        }
+    }
+
+    #[test]
+    fn visible_normals_are_visible() {
+        for kind in KINDS {
+            for alpha in [0.0, 1e-3, 0.3, 1.0, 1e3] {
+                let distribution = Microfacet::isotropic(kind, alpha);
+                for z in [1.0_f32, 0.5, 1e-3, 1e-20] {
+                    let wo = Vec3::new((1.0 - z * z).sqrt(), 0.0, z);
+                    for i in 0..100 {
+                        let u = Vec2::new((i % 10) as f32, (i / 10) as f32) / 10.0;
+                        let m = distribution.sample_visible(wo, u);
+                        assert!(
+                            (m.length() - 1.0).abs() < 1e-5 && m.z >= 0.0,
+                            "{distribution:?} {wo} {u}: {m}"
+                        );
+                        assert!(wo.dot(m) > -1e-6, "{distribution:?} {wo} {u}: {m}");
+                    }
+                }
+            }
+        }
+    }
+}

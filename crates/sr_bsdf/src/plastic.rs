@@ -145,3 +145,36 @@ impl LobeChoice {
         LobeProbabilities { specular, diffuse: 1.0 - specular }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A lossless coating over a white base returns all light, from any direction: what the coating
+    /// reflects, and what bounces below until it leaves.
+    #[test]
+    fn white_plastic_loses_nothing() {
+        for eta in [1.3, 1.5, 2.0] {
+            let plastic = Plastic::new(SmoothCoat::new(eta), Rgb::ONE, Rgb::ONE, true);
+            for z in [1.0_f32, 0.5, 0.1] {
+                let wo = Vec3::new((1.0 - z * z).sqrt(), 0.0, z);
+                let n = 20_000;
+                let base: f32 = (0..n)
+                    .map(|i| (i as f32 + 0.5) / n as f32)
+                    .map(|mu| plastic.eval(wo, Vec3::new(0.0, (1.0 - mu * mu).sqrt(), mu)).y * mu)
+                    .sum::<f32>()
+                    * std::f32::consts::TAU
+                    / n as f32;
+                let total = base + dielectric(z, eta).reflectance;
+                assert!((total - 1.0).abs() < 2e-4, "{eta} {z}: {total}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_black_plastic_is_never_sampled() {
+        let plastic = Plastic::new(SmoothCoat::new(1.5), Rgb::ZERO, Rgb::ZERO, false);
+        assert_eq!(plastic.sample(Vec3::Z, 0.0, Vec2::splat(0.5)), None);
+        assert_eq!(plastic.pdf(Vec3::Z, Vec3::Z), 0.0);
+    }
+}

@@ -1,1 +1,5 @@
-//! sr_testing
+//! Shared test cases. Each list is long on purpose: a test over it must assert that it is not empty.
+
+pub mod bsdfs;
+
+pub use bsdfs::bsdf_cases;

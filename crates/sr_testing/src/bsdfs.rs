@@ -1,0 +1,97 @@
+//! Every scattering model, with its parameters at both ends and in between, seen from several directions.
+
+use std::sync::LazyLock;
+
+use glam::Vec3;
+use sr_bsdf::{
+    AnyBsdf, AnyModel, Bsdf, Conductor, Dielectric, Diffuse, Mask, Microfacet, MicrofacetKind, Plastic, Rgb,
+    RoughConductor, RoughDielectric, RoughPlastic, RoughPlasticTables, SmoothCoat, ThinDielectric,
+};
+
+/// A name that tells cases apart, a model, and a direction from which it reflects or transmits.
+pub type BsdfCase = (String, AnyBsdf<'static>, Vec3);
+
+const KINDS: [MicrofacetKind; 2] = [MicrofacetKind::Beckmann, MicrofacetKind::Ggx];
+const ALPHAS: [[f32; 2]; 6] = [[0.01, 0.01], [0.1, 0.1], [0.5, 0.5], [1.0, 1.0], [0.05, 0.4], [0.6, 0.15]];
+const COAT_ALPHAS: [f32; 3] = [0.05, 0.3, 1.0];
+
+const GREEN: Rgb = Rgb::new(0.2, 0.8, 0.5);
+const PINK: Rgb = Rgb::new(0.9, 0.7, 0.8);
+/// η and k of copper at 630, 532 and 465 nm (Johnson & Christy 1972), rounded.
+const COPPER: (Rgb, Rgb) = (Rgb::new(0.27, 1.09, 1.18), Rgb::new(3.41, 2.58, 2.40));
+
+/// The tables of rough plastic, for each kind and each of `COAT_ALPHAS`.
+static COATS: LazyLock<Vec<RoughPlasticTables>> = LazyLock::new(|| {
+    let new = |kind| COAT_ALPHAS.map(|alpha| RoughPlasticTables::new(kind, alpha, 1.5));
+    KINDS.into_iter().flat_map(new).collect()
+});
+
+/// All cases. Some have delta lobes only: [`Bsdf::lobes`] tells.
+pub fn bsdf_cases() -> Vec<BsdfCase> {
+    models().into_iter().flat_map(seen_from_several_directions).collect()
+}
+
+/// A model from each direction: along the normal, in between, and nearly grazing; from below too where it transmits.
+fn seen_from_several_directions((name, bsdf): (String, AnyBsdf<'static>)) -> Vec<BsdfCase> {
+    let above = [(1.0, 0.0), (0.8, 0.4), (0.5, 2.0), (0.15, 4.0), (0.02, 5.5)];
+    let below = [(-0.9, 1.0), (-0.4, 3.0)];
+    let transmits = bsdf.lobes().transmission || bsdf.sample(-Vec3::Z, 0.5, glam::Vec2::splat(0.5)).is_some();
+    let below = if transmits { &below[..] } else { &[] };
+    let case = |&(z, azimuth): &(f32, f32)| {
+        let wo = (Vec3::new(azimuth.cos(), azimuth.sin(), 0.0) * (1.0 - z * z).sqrt()).with_z(z);
+        (format!("{name}, wo.z = {z}"), bsdf, wo)
+    };
+    above.iter().chain(below).map(case).collect()
+}
+
+/// All models, named.
+fn models() -> Vec<(String, AnyBsdf<'static>)> {
+    let mut models: Vec<(String, AnyBsdf<'static>)> = vec![
+        ("diffuse".into(), Diffuse::new(GREEN).into()),
+        ("diffuse, black".into(), Diffuse::new(Rgb::ZERO).into()),
+        ("mirror".into(), Conductor::new(None, PINK).into()),
+        ("conductor".into(), Conductor::new(Some(COPPER), Rgb::ONE).into()),
+        ("thin dielectric".into(), ThinDielectric::new(1.5, Rgb::ONE, PINK).into()),
+        ("masked diffuse".into(), masked(0.4, Diffuse::new(GREEN))),
+        ("masked dielectric".into(), masked(0.9, Dielectric::new(1.5, Rgb::ONE, PINK))),
+        ("fully masked".into(), masked(0.0, Diffuse::new(GREEN))),
+    ];
+    for eta in [1.5, 1.0 / 1.33, 1.0] {
+        models.push((format!("dielectric {eta}"), Dielectric::new(eta, Rgb::ONE, Rgb::ONE).into()));
+    }
+    for kind in KINDS {
+        for [x, y] in ALPHAS {
+            models.extend(rough(&format!("{kind:?} {x} {y}"), Microfacet::new(kind, x, y)));
+        }
+    }
+    for nonlinear in [false, true] {
+        let plastic = |eta, diffuse| Plastic::new(SmoothCoat::new(eta), diffuse, PINK, nonlinear).into();
+        models.push((format!("plastic, nonlinear: {nonlinear}"), plastic(1.5, GREEN)));
+        models.push((format!("plastic 1.9 white, nonlinear: {nonlinear}"), plastic(1.9, Rgb::ONE)));
+        models.push((format!("plastic black, nonlinear: {nonlinear}"), plastic(1.3, Rgb::ZERO)));
+    }
+    for coat in COATS.iter() {
+        let name = format!("plastic {:?} {}", coat.distribution().kind(), coat.distribution().alpha().x);
+        models.push((name.clone(), RoughPlastic::new(coat, GREEN, PINK, false).into()));
+        models.push((format!("{name} black base"), RoughPlastic::new(coat, Rgb::ZERO, PINK, true).into()));
+        models.push((format!("{name} no gloss"), RoughPlastic::new(coat, Rgb::ONE, Rgb::ZERO, true).into()));
+    }
+    models
+}
+
+/// The models that a microfacet distribution alone makes rough.
+fn rough(name: &str, distribution: Microfacet) -> Vec<(String, AnyBsdf<'static>)> {
+    let copper = RoughConductor::new(distribution, Some(COPPER), PINK);
+    let glass = |eta| RoughDielectric::new(distribution, eta, PINK, GREEN);
+    vec![
+        (format!("conductor {name}"), copper.into()),
+        (format!("masked conductor {name}"), masked(0.7, copper)),
+        (format!("dielectric 1.5 {name}"), glass(1.5).into()),
+        (format!("dielectric 1.1 {name}"), glass(1.1).into()),
+        (format!("dielectric 1/1.33 {name}"), glass(1.0 / 1.33).into()),
+    ]
+}
+
+fn masked(opacity: f32, model: impl Into<AnyModel<'static>>) -> AnyBsdf<'static> {
+    AnyBsdf::Masked(Mask::new(opacity, model.into()))
+}
