@@ -30,6 +30,13 @@ fn uniform_sphere(u: Vec2) -> Vec3 {
     (Vec3::new(cos, sin, 0.0) * (1.0 - z * z).max(0.0).sqrt()).with_z(z)
 }
 
+/// The index of refraction on the other side of the surface, over that on the side of `wo`.
+fn index_beyond(bsdf: &AnyBsdf, wo: Vec3) -> f32 {
+    let eta_from = |wo| (0..200).filter_map(|i| sample(bsdf, wo, i)).map(|s| s.eta).find(|&eta| eta != 1.0);
+    // Where reflection is all but total, the other side knows.
+    eta_from(wo).or_else(|| eta_from(-wo).map(|eta| 1.0 / eta)).unwrap_or(1.0)
+}
+
 #[test]
 fn names_tell_cases_apart() {
     let mut names: Vec<String> = cases().into_iter().map(|(name, ..)| name).collect();
@@ -75,23 +82,19 @@ fn sample_agrees_with_eval_and_pdf() {
 }
 
 /// f(wo, wi) = f(wi, wo) for reflection; for transmission up to η², as radiance is scaled by 1/η².
-/// The exponential of a Beckmann tail magnifies rounding to some 10⁻³.
+/// Rounding is magnified by the exponential of a Beckmann tail, and at the critical angle.
 #[test]
 fn light_may_travel_either_way() {
     let mut checked = 0;
     for (name, bsdf, wo) in cases() {
-        let eta = (0..200)
-            .filter_map(|i| sample(&bsdf, wo, i))
-            .map(|s| s.eta)
-            .find(|&eta| eta != 1.0)
-            .unwrap_or(1.0);
+        let eta = index_beyond(&bsdf, wo);
         for i in 0..500 {
             let wi = uniform_sphere(uniforms(i).1);
             let scale = if wo.z * wi.z > 0.0 { 1.0 } else { eta * eta };
             let (there, back) = (bsdf.eval(wo, wi) * scale, bsdf.eval(wi, wo));
             let error = (there - back).abs().max_element();
-            assert!(error <= 0.01 * there.max_element() + 1e-9, "{name}, wi = {wi}: {there} {back}");
-            checked += usize::from(there.max_element() > 0.0);
+            assert!(error <= 0.01 * there.max_element() + 1e-6, "{name}, wi = {wi}: {there} {back}");
+            checked += usize::from(there.max_element() > 1e-4);
         }
     }
     assert!(checked > 50_000);
