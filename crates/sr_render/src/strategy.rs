@@ -80,6 +80,16 @@ impl Density {
         self.weights[basic as usize]
     }
 
+    /// Itself if it has a part of `bsdf`, otherwise half of it and half `bsdf`.
+    pub fn with_bsdf(&self) -> Self {
+        if self.weight(Basic::Bsdf) > 0.0 {
+            return *self;
+        }
+        let mut weights = self.weights.map(|w| 0.5 * w);
+        weights[Basic::Bsdf as usize] = 0.5;
+        Self { weights }
+    }
+
     /// Can it produce every direction that a surface may scatter to? Light sampling alone cannot.
     pub fn covers_surface(&self) -> bool {
         self.weight(Basic::Light) < 1.0

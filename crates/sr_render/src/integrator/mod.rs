@@ -1,0 +1,91 @@
+//! Integrators: from a camera ray to an estimate of the radiance along it.
+//!
+//! - [`PathTracer`]: `mis(bsdf, light)`, the default and the fast one.
+//! - [`StrategyTracer`]: any [`crate::Strategy`], written for clarity; tests hold the two against each other.
+//!
+//! Invariant: every integrator's expectation is the same image. What only one technique can find is found
+//! by that technique: delta lights by light sampling, delta lobes by the BSDF.
+
+mod path;
+mod roulette;
+mod strategies;
+
+use glam::Vec3;
+use sr_geometry::{Ray, Surface};
+use sr_sampling::{Cursor, Sequence};
+use sr_scene::Rgb;
+
+use crate::light::{LightSample, Target};
+use crate::scene::Scene;
+use crate::vertex::Vertex;
+use sr_bsdf::Bsdf;
+
+pub use path::PathTracer;
+pub use strategies::StrategyTracer;
+
+/// Estimates the radiance along a camera ray.
+pub trait Integrator: Sync {
+    /// One sample. Uniforms come from `u` at dimensions from [`FIRST_DIMENSION`] on.
+    fn li<Q: Sequence>(&self, scene: &Scene, ray: Ray, u: &mut Cursor<'_, Q>) -> PathSample;
+}
+
+/// Dimensions below this one belong to the camera: two for the film, two for the lens.
+pub const FIRST_DIMENSION: u32 = 4;
+
+/// How long paths are, and what the camera sees of the lights.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PathLimits {
+    /// Longest path in edges; `u32::MAX` is unbounded.
+    pub max_depth: u32,
+    /// Edges before Russian roulette; `u32::MAX` is never.
+    pub roulette_depth: u32,
+    /// Are lights black where the camera sees them directly?
+    pub hide_emitters: bool,
+}
+
+/// What one path brought home.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PathSample {
+    /// Estimate of the radiance.
+    pub li: Rgb,
+    /// The first surface, if there was one.
+    pub first: Option<FirstHit>,
+}
+
+/// Features of the first surface that a path meets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FirstHit {
+    /// Approximate albedo.
+    pub albedo: Rgb,
+    /// Shading normal, in world space.
+    pub normal: Vec3,
+    /// Distance from the ray's origin.
+    pub depth: f32,
+}
+
+impl FirstHit {
+    #[inline]
+    fn new(vertex: &Vertex<'_>, distance: f32) -> Self {
+        Self { albedo: vertex.bsdf.albedo(), normal: vertex.normal(), depth: distance }
+    }
+}
+
+/// Is nothing between a surface and the light that was sampled from it?
+#[inline]
+fn visible(scene: &Scene, from: &Surface, s: &LightSample) -> bool {
+    let ray = match s.target {
+        Target::Point(p) => from.spawn_ray_to(p),
+        Target::Infinity => from.spawn_ray(s.wi),
+    };
+    !scene.geometry.occluded(&ray)
+}
+
+/// Light from one of the lights that only light sampling can find.
+fn from_deltas(scene: &Scene, vertex: &Vertex<'_>, u_pick: f32) -> Rgb {
+    let Some(s) = scene.lights.sample_delta(vertex.surface.p, u_pick, &scene.textures) else { return Rgb::ZERO };
+    let f_cos = vertex.f_cos(s.wi);
+    if f_cos == Rgb::ZERO || !visible(scene, &vertex.surface, &s) {
+        return Rgb::ZERO;
+    }
+    f_cos * s.radiance
+}

@@ -1,0 +1,238 @@
+//! Shapes that shine: diffuse emission from the front of a mesh, a sphere or a disk.
+
+use std::f32::consts::PI;
+
+use glam::{Vec2, Vec3};
+use sr_sampling::warp::{concentric_disk, uniform_triangle};
+use sr_sampling::{AliasTable, to_solid_angle};
+use sr_scene::{ColorInput, Rgb};
+
+use super::{LightSample, Target};
+use crate::texture::Textures;
+
+/// A shape that emits.
+#[derive(Clone, Debug)]
+pub struct AreaLight {
+    form: Form,
+    radiance: ColorInput,
+    mean_radiance: Rgb,
+    area: f32,
+}
+
+#[derive(Clone, Debug)]
+enum Form {
+    Mesh { triangles: Vec<Triangle>, by_area: AliasTable },
+    Sphere { center: Vec3, radius: f32, frame: glam::Mat3, inwards: bool },
+    Disk { center: Vec3, u_axis: Vec3, v_axis: Vec3, normal: Vec3 },
+}
+
+/// One triangle of an emitting mesh: what sampling needs, in one place.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Triangle {
+    /// Corners.
+    pub positions: [Vec3; 3],
+    /// Texture coordinates at the corners.
+    pub uvs: [Vec2; 3],
+    /// Unit normal of the emitting side.
+    pub normal: Vec3,
+}
+
+/// A point on a light.
+struct LightPoint {
+    p: Vec3,
+    normal: Vec3,
+    uv: Vec2,
+}
+
+impl AreaLight {
+    /// A mesh whose triangles shine. `None` if it has no area.
+    pub(crate) fn mesh(triangles: Vec<Triangle>, radiance: ColorInput, textures: &Textures) -> Option<Self> {
+        let area_of = |t: &Triangle| {
+            let [a, b, c] = t.positions;
+            0.5 * (b - a).cross(c - a).length()
+        };
+        let areas: Vec<f32> = triangles.iter().map(area_of).collect();
+        let area = areas.iter().map(|&a| f64::from(a)).sum::<f64>() as f32;
+        let by_area = AliasTable::new(&areas).ok()?;
+        Some(Self::new(Form::Mesh { triangles, by_area }, radiance, area, textures))
+    }
+
+    /// A sphere that shines outwards (inwards if `inwards`).
+    pub(crate) fn sphere(
+        center: Vec3,
+        radius: f32,
+        frame: glam::Mat3,
+        inwards: bool,
+        radiance: ColorInput,
+        textures: &Textures,
+    ) -> Self {
+        let form = Form::Sphere { center, radius, frame, inwards };
+        Self::new(form, radiance, 4.0 * PI * radius * radius, textures)
+    }
+
+    /// A disk or ellipse that shines towards `normal`.
+    pub(crate) fn disk(
+        center: Vec3,
+        u_axis: Vec3,
+        v_axis: Vec3,
+        normal: Vec3,
+        radiance: ColorInput,
+        textures: &Textures,
+    ) -> Self {
+        let area = PI * u_axis.cross(v_axis).length();
+        Self::new(Form::Disk { center, u_axis, v_axis, normal }, radiance, area, textures)
+    }
+
+    fn new(form: Form, radiance: ColorInput, area: f32, textures: &Textures) -> Self {
+        Self { form, radiance, mean_radiance: textures.average(radiance), area }
+    }
+
+    /// Surface area, one side.
+    pub fn area(&self) -> f32 {
+        self.area
+    }
+
+    /// Emitted power: π A times the mean radiance.
+    pub fn power(&self) -> Rgb {
+        PI * self.area * self.mean_radiance
+    }
+
+    /// Radiance leaving a point of the surface with emitting normal `ng` in direction `w`.
+    #[inline]
+    pub fn emitted(&self, ng: Vec3, uv: Vec2, w: Vec3, textures: &Textures) -> Rgb {
+        if ng.dot(w) > 0.0 { textures.color(self.radiance, uv) } else { Rgb::ZERO }
+    }
+
+    /// Draws a direction from `from` to the light. `u_pick` chooses a triangle, `u` a point.
+    ///
+    /// Triangles and disks are sampled by area; a sphere seen from outside by the cone it fills
+    /// (Shirley, Wang & Zimmerman 1996).
+    #[inline]
+    pub fn sample(&self, from: Vec3, u_pick: f32, u: Vec2, textures: &Textures) -> Option<LightSample> {
+        let point = match &self.form {
+            Form::Mesh { triangles, by_area } => {
+                let t = &triangles[by_area.sample(u_pick).index];
+                let b = uniform_triangle(u);
+                let mix = |v: [Vec3; 3]| b.x * v[0] + b.y * v[1] + (1.0 - b.x - b.y) * v[2];
+                let uv = b.x * t.uvs[0] + b.y * t.uvs[1] + (1.0 - b.x - b.y) * t.uvs[2];
+                LightPoint { p: mix(t.positions), normal: t.normal, uv }
+            }
+            Form::Disk { center, u_axis, v_axis, normal } => {
+                let d = concentric_disk(u);
+                LightPoint { p: *center + d.x * *u_axis + d.y * *v_axis, normal: *normal, uv: disk_uv(d) }
+            }
+            Form::Sphere { center, radius, frame, inwards } => {
+                return self.sample_sphere(*center, *radius, frame, *inwards, from, u, textures);
+            }
+        };
+        let to_light = point.p - from;
+        let distance_squared = to_light.length_squared();
+        let wi = to_light / distance_squared.sqrt();
+        let cos_light = -point.normal.dot(wi);
+        // also false for NaN, where the points coincide
+        if !(cos_light > 0.0) {
+            return None;
+        }
+        let pdf = to_solid_angle(1.0 / self.area, distance_squared, cos_light);
+        let radiance = textures.color(self.radiance, point.uv);
+        pdf.is_finite().then_some(LightSample { wi, radiance, pdf, target: Target::Point(point.p) })
+    }
+
+    #[allow(clippy::too_many_arguments)]
+    fn sample_sphere(
+        &self,
+        center: Vec3,
+        radius: f32,
+        frame: &glam::Mat3,
+        inwards: bool,
+        from: Vec3,
+        u: Vec2,
+        textures: &Textures,
+    ) -> Option<LightSample> {
+        let outside = (center - from).length_squared() > radius * radius;
+        if outside == inwards {
+            return None;
+        }
+        let (p, wi, pdf) = if outside {
+            sphere::sample_cone(center, radius, from, u)?
+        } else {
+            sphere::sample_area(center, radius, from, u)?
+        };
+        let radiance = textures.color(self.radiance, sphere::uv(frame, p - center));
+        Some(LightSample { wi, radiance, pdf, target: Target::Point(p) })
+    }
+
+    /// The density, in sr⁻¹, with which `sample` draws the direction from `from` to the point `p` of
+    /// the light, where the emitting normal is `ng`. 0 from behind.
+    #[inline]
+    pub fn pdf(&self, from: Vec3, p: Vec3, ng: Vec3) -> f32 {
+        let to_light = p - from;
+        let distance_squared = to_light.length_squared();
+        let cos_light = -ng.dot(to_light) / distance_squared.sqrt();
+        if !(cos_light > 0.0) {
+            return 0.0;
+        }
+        if let Form::Sphere { center, radius, inwards: false, .. } = &self.form {
+            return sphere::cone_pdf(*center, *radius, from);
+        }
+        to_solid_angle(1.0 / self.area, distance_squared, cos_light)
+    }
+}
+
+/// Texture coordinates of a disk: radius and angle.
+fn disk_uv(d: Vec2) -> Vec2 {
+    let phi = d.y.atan2(d.x) / std::f32::consts::TAU;
+    Vec2::new(d.length(), if phi < 0.0 { phi + 1.0 } else { phi })
+}
+
+/// Sampling a sphere from a point.
+mod sphere {
+    use super::{PI, Vec2, Vec3, to_solid_angle};
+    use sr_sampling::Distribution;
+    use sr_sampling::warp::{UniformCone, UniformSphere};
+
+    /// The cone of directions from `from`, outside, that meet the sphere.
+    fn cone(center: Vec3, radius: f32, from: Vec3) -> UniformCone {
+        let sin_squared = (radius * radius / (center - from).length_squared()).min(1.0);
+        UniformCone::from_sin_squared(sin_squared)
+    }
+
+    pub(super) fn cone_pdf(center: Vec3, radius: f32, from: Vec3) -> f32 {
+        cone(center, radius, from).density()
+    }
+
+    /// A point of the visible cap, the direction to it and its density.
+    pub(super) fn sample_cone(center: Vec3, radius: f32, from: Vec3, u: Vec2) -> Option<(Vec3, Vec3, f32)> {
+        let axis = center - from;
+        let distance = axis.length();
+        let z = axis / distance;
+        let (x, y) = z.any_orthonormal_pair();
+        let s = cone(center, radius, from).sample(u)?;
+        let wi = (x * s.value.x + y * s.value.y + z * s.value.z).normalize();
+        // the nearer intersection, from the closest approach to the centre
+        let along = axis.dot(wi);
+        let miss_squared = (axis - along * wi).length_squared();
+        let half_chord = (radius * radius - miss_squared).max(0.0).sqrt();
+        let offset = wi * (along - half_chord) - axis;
+        let p = center + offset * (radius / offset.length());
+        Some((p, wi, s.pdf))
+    }
+
+    /// A point of the whole sphere, for a viewer inside.
+    pub(super) fn sample_area(center: Vec3, radius: f32, from: Vec3, u: Vec2) -> Option<(Vec3, Vec3, f32)> {
+        let normal = UniformSphere.sample(u)?.value;
+        let p = center + radius * normal;
+        let to_light = p - from;
+        let distance_squared = to_light.length_squared();
+        let wi = to_light / distance_squared.sqrt();
+        let pdf = to_solid_angle(1.0 / (4.0 * PI * radius * radius), distance_squared, normal.dot(wi));
+        pdf.is_finite().then_some((p, wi, pdf))
+    }
+
+    /// (φ / 2π, θ / π) in the sphere's frame.
+    pub(super) fn uv(frame: &glam::Mat3, outwards: Vec3) -> Vec2 {
+        let local = (frame.transpose() * outwards).normalize_or(Vec3::Z);
+        let phi = local.y.atan2(local.x) / std::f32::consts::TAU;
+        Vec2::new(if phi < 0.0 { phi + 1.0 } else { phi }, local.z.clamp(-1.0, 1.0).acos() / PI)
+    }
+}

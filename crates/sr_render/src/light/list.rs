@@ -1,0 +1,253 @@
+//! All lights of a scene, and the choice among them in proportion to their power.
+
+use glam::{Vec2, Vec3};
+use sr_geometry::{Geometry, ShapeId, Surface};
+use sr_sampling::{AliasTable, power_weight};
+use sr_scene::Rgb;
+
+use super::{
+    AreaLight, ConstantEnvironment, DirectionalLight, Environment, LightSample, PointLight, SeenFrom, SpotLight,
+};
+use crate::texture::{Textures, luminance};
+
+/// Index of a light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LightId(pub u32);
+
+/// A light with an extent: other techniques can hit it by chance.
+#[derive(Clone, Debug)]
+pub(crate) enum Extended {
+    Area(AreaLight),
+    Constant(ConstantEnvironment),
+    Environment(Environment),
+}
+
+/// A light without one.
+#[derive(Clone, Debug)]
+pub(crate) enum Delta {
+    Point(PointLight),
+    Directional(DirectionalLight),
+    Spot(SpotLight),
+}
+
+/// The lights of a scene.
+///
+/// Extended lights and deltas are chosen separately: a delta can only be sampled, so it never
+/// competes with another technique.
+#[derive(Debug)]
+pub struct Lights {
+    extended: Vec<Extended>,
+    extended_choice: Choice,
+    environments: Vec<LightId>,
+    deltas: Vec<Delta>,
+    delta_choice: Choice,
+    /// The shapes that shine, alone: what lies behind what along a direction.
+    emitters: Geometry,
+    light_of_emitter: Vec<LightId>,
+}
+
+/// A choice in proportion to power.
+#[derive(Debug)]
+struct Choice {
+    table: Option<AliasTable>,
+    pmf: Vec<f32>,
+}
+
+impl Choice {
+    fn new(powers: Vec<f32>) -> Self {
+        let total: f64 = powers.iter().map(|&p| f64::from(p)).sum();
+        let table = AliasTable::new(&powers).ok();
+        let pmf = match table {
+            Some(_) => powers.iter().map(|&p| (f64::from(p) / total) as f32).collect(),
+            None => vec![0.0; powers.len()],
+        };
+        Self { table, pmf }
+    }
+
+    /// An index, its probability, and the uniform made new.
+    #[inline]
+    fn sample(&self, u: f32) -> Option<(usize, f32, f32)> {
+        if self.pmf.len() == 1 && self.table.is_some() {
+            return Some((0, 1.0, u));
+        }
+        let s = self.table.as_ref()?.sample(u);
+        Some((s.index, s.pmf, s.u))
+    }
+}
+
+impl Lights {
+    /// `emitters` holds the shapes of the area lights; `light_of_emitter` says which light each is.
+    pub(crate) fn new(
+        extended: Vec<Extended>,
+        deltas: Vec<Delta>,
+        emitters: Geometry,
+        light_of_emitter: Vec<LightId>,
+        scene_radius: f32,
+    ) -> Self {
+        let flux = |radiance: Rgb| {
+            4.0 * std::f32::consts::PI * std::f32::consts::PI * scene_radius * scene_radius * radiance
+        };
+        let extended_power = |light: &Extended| {
+            luminance(match light {
+                Extended::Area(area) => area.power(),
+                Extended::Constant(constant) => flux(constant.radiance),
+                Extended::Environment(environment) => flux(environment.mean_radiance()),
+            })
+        };
+        let delta_power = |light: &Delta| {
+            luminance(match light {
+                Delta::Point(point) => point.power(),
+                Delta::Directional(directional) => directional.power(scene_radius),
+                Delta::Spot(spot) => spot.power(),
+            })
+        };
+        let ids = (0..extended.len() as u32).map(LightId);
+        Self {
+            extended_choice: Choice::new(extended.iter().map(extended_power).collect()),
+            delta_choice: Choice::new(deltas.iter().map(delta_power).collect()),
+            environments: ids.filter(|id| !matches!(extended[id.0 as usize], Extended::Area(_))).collect(),
+            extended,
+            deltas,
+            emitters,
+            light_of_emitter,
+        }
+    }
+
+    /// How many lights there are.
+    pub fn count(&self) -> usize {
+        self.extended.len() + self.deltas.len()
+    }
+
+    /// Lights with an extent.
+    pub fn extended_ids(&self) -> impl Iterator<Item = LightId> {
+        (0..self.extended.len() as u32).map(LightId)
+    }
+
+    /// Is there a light that only light sampling can find?
+    pub fn has_deltas(&self) -> bool {
+        !self.deltas.is_empty()
+    }
+
+    /// Draws a direction from `from` to one extended light, chosen by `u_pick`. The density is that of
+    /// reaching this light: choice times direction.
+    #[inline]
+    pub fn sample(&self, from: Vec3, u_pick: f32, u: Vec2, textures: &Textures) -> Option<LightSample> {
+        let (index, pmf, u_pick) = self.extended_choice.sample(u_pick)?;
+        let mut s = self.sample_one(LightId(index as u32), from, u_pick, u, textures)?;
+        s.pdf *= pmf;
+        Some(s)
+    }
+
+    /// Draws a direction from `from` to a given extended light.
+    pub(crate) fn sample_one(
+        &self,
+        id: LightId,
+        from: Vec3,
+        u_pick: f32,
+        u: Vec2,
+        textures: &Textures,
+    ) -> Option<LightSample> {
+        match &self.extended[id.0 as usize] {
+            Extended::Area(area) => area.sample(from, u_pick, u, textures),
+            Extended::Constant(constant) => constant.sample(u),
+            Extended::Environment(environment) => environment.sample(u),
+        }
+    }
+
+    /// Light arriving at `from` from one delta light, over the probability of choosing it.
+    #[inline]
+    pub fn sample_delta(&self, from: Vec3, u_pick: f32, textures: &Textures) -> Option<LightSample> {
+        let (index, pmf, _) = self.delta_choice.sample(u_pick)?;
+        let mut s = match &self.deltas[index] {
+            Delta::Point(point) => point.sample(from)?,
+            Delta::Directional(directional) => directional.sample(),
+            Delta::Spot(spot) => spot.sample(from, textures)?,
+        };
+        s.radiance /= pmf;
+        Some(s)
+    }
+
+    /// Radiance that a point of an area light emits towards `w`.
+    #[inline]
+    pub fn emitted(&self, id: LightId, surface: &Surface, w: Vec3, textures: &Textures) -> Rgb {
+        match &self.extended[id.0 as usize] {
+            Extended::Area(area) => area.emitted(surface.ng, surface.uv, w, textures),
+            Extended::Constant(_) | Extended::Environment(_) => Rgb::ZERO,
+        }
+    }
+
+    /// The density, in sr⁻¹, with which `sample` reaches the point `surface` of an area light.
+    #[inline]
+    pub fn pdf_of_point(&self, id: LightId, from: Vec3, surface: &Surface) -> f32 {
+        match &self.extended[id.0 as usize] {
+            Extended::Area(area) => self.pmf(id) * area.pdf(from, surface.p, surface.ng),
+            Extended::Constant(_) | Extended::Environment(_) => 0.0,
+        }
+    }
+
+    /// The probability that `sample` chooses a light.
+    #[inline]
+    pub fn pmf(&self, id: LightId) -> f32 {
+        self.extended_choice.pmf[id.0 as usize]
+    }
+
+    /// Radiance of all environments along `wi`, each multiplied by `weight` of the density with which
+    /// `sample` draws `wi` from it.
+    #[inline]
+    pub fn environment(&self, wi: Vec3, weight: impl Fn(f32) -> f32) -> Rgb {
+        let mut sum = Rgb::ZERO;
+        for &id in &self.environments {
+            let (radiance, pdf) = match &self.extended[id.0 as usize] {
+                Extended::Constant(constant) => (constant.radiance, constant.pdf()),
+                Extended::Environment(environment) => (environment.radiance(wi), environment.pdf(wi)),
+                Extended::Area(_) => continue,
+            };
+            sum += radiance * weight(self.pmf(id) * pdf);
+        }
+        sum
+    }
+
+    /// [`Lights::environment`] under the power heuristic against one other technique.
+    #[inline]
+    pub(crate) fn environment_by_power(&self, wi: Vec3, other_pdf: f32) -> Rgb {
+        self.environment(wi, |p_light| power_weight(other_pdf, p_light))
+    }
+
+    /// The density over directions of one light, or of all, as seen from a point.
+    pub fn seen_from<'a>(&'a self, from: Vec3, only: Option<LightId>, textures: &'a Textures) -> SeenFrom<'a> {
+        SeenFrom::new(self, from, only, textures)
+    }
+
+    /// The whole density, in sr⁻¹, of drawing direction `wi`: every light along it counts, also one behind another.
+    pub(crate) fn pdf_of_direction(&self, from: Vec3, wi: Vec3, only: Option<LightId>) -> f32 {
+        let counts = |id: LightId| only.is_none_or(|o| o == id);
+        let weight = |id: LightId| if only.is_some() { 1.0 } else { self.pmf(id) };
+        let mut sum = 0.0;
+        for &id in self.environments.iter().filter(|&&id| counts(id)) {
+            sum += weight(id)
+                * match &self.extended[id.0 as usize] {
+                    Extended::Constant(constant) => constant.pdf(),
+                    Extended::Environment(environment) => environment.pdf(wi),
+                    Extended::Area(_) => 0.0,
+                };
+        }
+        let mut ray = sr_geometry::Ray { origin: from, direction: wi, t_max: f32::INFINITY };
+        for _ in 0..MAX_CROSSINGS {
+            let Some(hit) = self.emitters.intersect(&ray) else { break };
+            let surface = self.emitters.surface(&ray, &hit);
+            let ShapeId(shape) = hit.shape;
+            let id = self.light_of_emitter[shape as usize];
+            if let Extended::Area(area) = &self.extended[id.0 as usize]
+                && counts(id)
+            {
+                sum += weight(id) * area.pdf(from, surface.p, surface.ng);
+            }
+            ray = surface.spawn_ray(wi);
+        }
+        sum
+    }
+}
+
+/// More emitting layers than this along one direction are not counted: no scene has them, and a
+/// broken mesh must not hang the renderer.
+const MAX_CROSSINGS: usize = 4096;

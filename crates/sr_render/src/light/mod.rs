@@ -1,0 +1,51 @@
+//! Lights: what they emit, and directions towards them as densities.
+//!
+//! In: a point in space and uniforms. Out: a direction, the radiance that would arrive along it if
+//! nothing were in between, and its density in sr⁻¹. Nothing here traces a shadow ray.
+//!
+//! - [`AreaLight`]: a mesh, a sphere or a disk that shines.
+//! - [`Environment`]: an image around the scene; [`ConstantEnvironment`]: the same radiance from everywhere.
+//! - [`PointLight`], [`SpotLight`], [`DirectionalLight`]: deltas, which only light sampling can find.
+//! - [`Lights`]: all of them, and the choice among them.
+//!
+//! Invariant: `pdf` is the density with which `sample` draws a direction, lights behind others included.
+
+mod area;
+mod environment;
+mod list;
+mod point;
+mod seen_from;
+
+use glam::Vec3;
+use sr_scene::Rgb;
+
+pub use area::AreaLight;
+pub use environment::{ConstantEnvironment, Environment};
+pub(crate) use area::Triangle;
+pub(crate) use list::{Delta, Extended};
+pub use list::{LightId, Lights};
+pub use point::{DirectionalLight, PointLight, SpotLight};
+pub use seen_from::SeenFrom;
+
+/// A sampled direction towards a light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightSample {
+    /// Unit vector from the shading point.
+    pub wi: Vec3,
+    /// Radiance that arrives along `wi` if nothing is in between; of a delta light, already divided by
+    /// the density (intensity over squared distance, irradiance).
+    pub radiance: Rgb,
+    /// Density in sr⁻¹; 1 for a delta light.
+    pub pdf: f32,
+    /// Where the light is: what a shadow ray must reach.
+    pub target: Target,
+}
+
+/// The far end of a shadow ray.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Target {
+    /// A point.
+    Point(Vec3),
+    /// Infinitely far along `wi`.
+    Infinity,
+}

@@ -1,0 +1,250 @@
+//! The compiled scene: flat arrays and ids, read-only while rendering.
+//!
+//! In: a validated [`SceneDesc`]. Out: [`Scene`]. Nothing flows back.
+
+use std::sync::Arc;
+
+use sr_geometry::{
+    Disk, Geometry, GeometryError, GeometryInput, Instance, Shape, ShapeId, Sphere, TriangleMesh,
+};
+use sr_scene::{CameraDesc, Emission, LightDesc, MaterialId, MeshDesc, SceneDesc, Settings, ShapeDesc, Span};
+use thiserror::Error;
+
+use crate::light::{
+    AreaLight, ConstantEnvironment, Delta, DirectionalLight, Environment, Extended, LightId, Lights, PointLight,
+    SpotLight, Triangle,
+};
+use crate::material::{MaterialError, Materials};
+use crate::texture::Textures;
+
+/// Why a description does not compile.
+#[derive(Debug, Error)]
+pub enum CompileError {
+    /// Geometry that cannot be intersected.
+    #[error(transparent)]
+    Geometry(#[from] GeometryError),
+    /// Materials that cannot be nested.
+    #[error(transparent)]
+    Material(#[from] MaterialError),
+}
+
+/// A scene, ready to be walked.
+#[derive(Debug)]
+pub struct Scene {
+    pub(crate) camera: CameraDesc,
+    settings: Settings,
+    pub(crate) geometry: Geometry,
+    /// Per shape: material and light.
+    shapes: Vec<ShapeRecord>,
+    pub(crate) materials: Materials,
+    material_count: usize,
+    pub(crate) textures: Textures,
+    texture_count: usize,
+    pub(crate) lights: Lights,
+}
+
+/// What the integrator asks of a shape.
+#[derive(Clone, Copy, Debug)]
+struct ShapeRecord {
+    material: MaterialId,
+    light: Option<LightId>,
+}
+
+impl Scene {
+    /// Compiles a description that [`sr_scene`] has validated. Builds on rayon's current pool.
+    ///
+    /// # Errors
+    /// If the geometry is broken or materials nest in a way that is not supported.
+    pub fn compile(desc: &SceneDesc) -> Result<Self, CompileError> {
+        let groups: Vec<Vec<Shape>> =
+            desc.groups.iter().map(|g| g.shapes.iter().map(input_shape).collect()).collect();
+        let instances = desc
+            .instances
+            .iter()
+            .map(|i| Instance { group: i.group, world_from_group: i.world_from_group })
+            .collect();
+        let input =
+            GeometryInput { shapes: desc.shapes.iter().map(input_shape).collect(), groups, instances };
+        let geometry = Geometry::build(&input)?;
+        let textures = Textures::new(&desc.textures, &desc.images);
+        let materials = Materials::new(&desc.materials)?;
+        let (lights, light_of_shape) = compile_lights(desc, &geometry, &textures)?;
+        let world = desc.shapes.iter().zip(light_of_shape);
+        let grouped = desc.groups.iter().flat_map(|g| &g.shapes).map(|shape| (shape, None));
+        let shapes =
+            world.chain(grouped).map(|(shape, light)| ShapeRecord { material: shape.material, light }).collect();
+        Ok(Self {
+            camera: desc.camera.clone(),
+            settings: desc.settings.clone(),
+            geometry,
+            shapes,
+            materials,
+            material_count: desc.materials.len(),
+            textures,
+            texture_count: desc.textures.len(),
+            lights,
+        })
+    }
+
+    /// What the scene file asks of the renderer.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// The camera and the film's default size.
+    pub fn camera(&self) -> &CameraDesc {
+        &self.camera
+    }
+
+    /// The shapes.
+    pub fn geometry(&self) -> &Geometry {
+        &self.geometry
+    }
+
+    /// The lights.
+    pub fn lights(&self) -> &Lights {
+        &self.lights
+    }
+
+    /// The textures.
+    pub fn textures(&self) -> &Textures {
+        &self.textures
+    }
+
+    /// How many materials there are.
+    pub fn material_count(&self) -> usize {
+        self.material_count
+    }
+
+    /// How many textures there are.
+    pub fn texture_count(&self) -> usize {
+        self.texture_count
+    }
+
+    /// Bytes of geometry and textures.
+    pub fn memory_bytes(&self) -> usize {
+        self.geometry.memory_bytes() + self.textures.memory_bytes()
+    }
+
+    #[inline]
+    pub(crate) fn material_of(&self, ShapeId(shape): ShapeId) -> MaterialId {
+        self.shapes[shape as usize].material
+    }
+
+    #[inline]
+    pub(crate) fn light_of(&self, ShapeId(shape): ShapeId) -> Option<LightId> {
+        self.shapes[shape as usize].light
+    }
+}
+
+fn input_shape(shape: &ShapeDesc) -> Shape<'_> {
+    match &shape.geometry {
+        sr_scene::Geometry::Mesh(mesh) => Shape::Mesh(input_mesh(mesh)),
+        &sr_scene::Geometry::Sphere { center, radius, frame, flip_normals } => {
+            Shape::Sphere(Sphere { center, radius, frame, flip_normals })
+        }
+        &sr_scene::Geometry::Disk { center, u_axis, v_axis, flip_normals } => {
+            Shape::Disk(Disk { center, u_axis, v_axis, flip_normals })
+        }
+    }
+}
+
+fn input_mesh(mesh: &Arc<MeshDesc>) -> TriangleMesh<'_> {
+    TriangleMesh {
+        positions: &mesh.positions,
+        normals: &mesh.normals,
+        uvs: &mesh.uvs,
+        triangles: &mesh.triangles,
+    }
+}
+
+/// The lights, and which of them each world shape is.
+fn compile_lights(
+    desc: &SceneDesc,
+    geometry: &Geometry,
+    textures: &Textures,
+) -> Result<(Lights, Vec<Option<LightId>>), GeometryError> {
+    let (mut extended, mut deltas, mut emitters) = (Vec::new(), Vec::new(), Vec::new());
+    let mut light_of_emitter = Vec::new();
+    let mut light_of_shape = vec![None; desc.shapes.len()];
+    for (index, shape) in desc.shapes.iter().enumerate() {
+        let Some(emission) = shape.emission else { continue };
+        let Some(light) = area_light(geometry, ShapeId(index as u32), shape, emission, textures) else { continue };
+        let id = LightId(extended.len() as u32);
+        extended.push(Extended::Area(light));
+        light_of_shape[index] = Some(id);
+        light_of_emitter.push(id);
+        emitters.push(input_shape(shape));
+    }
+    for light in &desc.lights {
+        match *light {
+            LightDesc::Constant { radiance, .. } => {
+                extended.push(Extended::Constant(ConstantEnvironment { radiance }));
+            }
+            LightDesc::Environment { image, scale, world_from_light, .. } => {
+                let image = Arc::clone(&desc.images[image as usize]);
+                extended.push(Extended::Environment(Environment::new(image, scale, world_from_light)));
+            }
+            LightDesc::Point { position, intensity, .. } => {
+                deltas.push(Delta::Point(PointLight { position, intensity }));
+            }
+            LightDesc::Directional { direction, irradiance, .. } => {
+                deltas.push(Delta::Directional(DirectionalLight { direction, irradiance }));
+            }
+            LightDesc::Spot { world_from_light, intensity, cutoff_angle, beam_width, texture, .. } => {
+                deltas.push(Delta::Spot(SpotLight::new(
+                    world_from_light,
+                    intensity,
+                    cutoff_angle,
+                    beam_width,
+                    texture,
+                )));
+            }
+        }
+    }
+    let emitters = Geometry::build(&GeometryInput { shapes: emitters, ..GeometryInput::default() })?;
+    let bounds = geometry.bounds();
+    let radius = if bounds.is_empty() { 1.0 } else { 0.5 * (bounds.max - bounds.min).length() };
+    Ok((Lights::new(extended, deltas, emitters, light_of_emitter, radius), light_of_shape))
+}
+
+/// The area light of a shape; `None` if it has no area.
+fn area_light(
+    geometry: &Geometry,
+    id: ShapeId,
+    shape: &ShapeDesc,
+    emission: Emission,
+    textures: &Textures,
+) -> Option<AreaLight> {
+    match &shape.geometry {
+        sr_scene::Geometry::Mesh(mesh) => {
+            let corners = (0..mesh.triangles.len() as u32).map(|primitive| {
+                let positions = geometry.triangle_vertices(id, primitive);
+                let [a, b, c] = positions;
+                let of = mesh.triangles[primitive as usize].map(|i| i as usize);
+                let normal = (b - a).cross(c - a).normalize_or_zero();
+                let uvs = if mesh.uvs.is_empty() {
+                    [glam::Vec2::ZERO, glam::Vec2::X, glam::Vec2::Y]
+                } else {
+                    of.map(|i| mesh.uvs[i])
+                };
+                Triangle { positions, uvs, normal }
+            });
+            AreaLight::mesh(corners.collect(), emission.radiance, textures)
+        }
+        &sr_scene::Geometry::Sphere { center, radius, frame, flip_normals } => {
+            Some(AreaLight::sphere(center, radius, frame, flip_normals, emission.radiance, textures))
+        }
+        &sr_scene::Geometry::Disk { center, u_axis, v_axis, flip_normals } => {
+            let facing = u_axis.cross(v_axis).normalize_or_zero();
+            let normal = if flip_normals { -facing } else { facing };
+            Some(AreaLight::disk(center, u_axis, v_axis, normal, emission.radiance, textures))
+        }
+    }
+}
+
+/// Where a shape was described, for messages about it.
+pub fn span_of_shape(desc: &SceneDesc, id: ShapeId) -> Option<&Span> {
+    let shapes = desc.shapes.iter().chain(desc.groups.iter().flat_map(|g| &g.shapes));
+    shapes.map(|shape| &shape.span).nth(id.0 as usize)
+}

@@ -1,0 +1,161 @@
+//! A path's vertex on a surface: where it is, which way it faces, how it scatters.
+//!
+//! In: a ray and its hit. Out: [`Vertex`], which speaks world-space directions to the integrator and
+//! local ones to the BSDF.
+
+use glam::{Vec2, Vec3};
+use sr_bsdf::{AnyBsdf, Bsdf, BsdfSample, Lobes};
+use sr_geometry::{Hit, Ray, Surface};
+use sr_scene::Rgb;
+
+use crate::material::Bump;
+use crate::scene::Scene;
+
+/// An orthonormal frame with `n` as its +Z.
+#[derive(Clone, Copy, Debug)]
+struct Frame {
+    s: Vec3,
+    t: Vec3,
+    n: Vec3,
+}
+
+impl Frame {
+    /// Any tangents (Duff et al. 2017).
+    #[inline]
+    fn about(n: Vec3) -> Self {
+        let (s, t) = n.any_orthonormal_pair();
+        Self { s, t, n }
+    }
+
+    /// The tangent as close to `dpdu` as can be.
+    fn along(n: Vec3, dpdu: Vec3) -> Self {
+        match (dpdu - n * n.dot(dpdu)).try_normalize() {
+            Some(s) => Self { s, t: n.cross(s), n },
+            None => Self::about(n),
+        }
+    }
+
+    #[inline]
+    fn to_local(self, w: Vec3) -> Vec3 {
+        Vec3::new(w.dot(self.s), w.dot(self.t), w.dot(self.n))
+    }
+
+    #[inline]
+    fn to_world(self, w: Vec3) -> Vec3 {
+        self.s * w.x + self.t * w.y + self.n * w.z
+    }
+}
+
+/// A surface point with its scattering model, and the direction the path came from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Vertex<'a> {
+    pub surface: Surface,
+    pub bsdf: AnyBsdf<'a>,
+    frame: Frame,
+    wo: Vec3,
+    /// The normal before a bump map tilted it: directions must lie on one side of both.
+    untilted: Option<Vec3>,
+}
+
+impl<'a> Vertex<'a> {
+    /// The vertex at a hit, seen along `ray`.
+    #[inline]
+    pub fn new(scene: &'a Scene, ray: &Ray, hit: &Hit, surface: Surface) -> Self {
+        let material = scene.materials.get(scene.material_of(hit.shape));
+        let wo = -ray.direction;
+        let mut normal = surface.ns;
+        if let Some(bump) = material.front.bump {
+            normal = tilted(scene, hit, &surface, bump);
+        }
+        let (side, normal) = match &material.back {
+            Some(back) if wo.dot(normal) < 0.0 => (back, -normal),
+            _ => (&material.front, normal),
+        };
+        let frame = if side.is_anisotropic() {
+            Frame::along(normal, scene.geometry.tangents(hit).dpdu)
+        } else {
+            Frame::about(normal)
+        };
+        Self {
+            bsdf: scene.materials.bsdf(side, surface.uv, &scene.textures),
+            wo: frame.to_local(wo),
+            frame,
+            untilted: side.bump.map(|_| surface.ns),
+            surface,
+        }
+    }
+
+    #[inline]
+    pub fn lobes(&self) -> Lobes {
+        self.bsdf.lobes()
+    }
+
+    /// The shading normal, on the viewer's side of a two-sided material.
+    pub fn normal(&self) -> Vec3 {
+        self.frame.n
+    }
+
+    /// f · |cos θ| and the density with which the BSDF samples `wi`, a direction in world space.
+    #[inline]
+    pub fn eval(&self, wi: Vec3) -> (Rgb, f32) {
+        if !self.is_consistent(wi) {
+            return (Rgb::ZERO, 0.0);
+        }
+        let local = self.frame.to_local(wi);
+        (self.bsdf.eval(self.wo, local) * local.z.abs(), self.bsdf.pdf(self.wo, local))
+    }
+
+    /// f · |cos θ| for a direction in world space.
+    #[inline]
+    pub fn f_cos(&self, wi: Vec3) -> Rgb {
+        if !self.is_consistent(wi) {
+            return Rgb::ZERO;
+        }
+        let local = self.frame.to_local(wi);
+        self.bsdf.eval(self.wo, local) * local.z.abs()
+    }
+
+    /// A direction in world space, as the BSDF samples it.
+    #[inline]
+    pub fn sample(&self, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
+        let mut s = self.bsdf.sample(self.wo, u_lobe, u)?;
+        s.wi = self.frame.to_world(s.wi);
+        (s.delta || self.is_consistent(s.wi)).then_some(s)
+    }
+
+    /// The cosine of a world-space direction with the shading normal.
+    #[inline]
+    pub fn cos(&self, wi: Vec3) -> f32 {
+        wi.dot(self.frame.n)
+    }
+
+    /// A local direction in world space.
+    #[inline]
+    pub fn to_world(&self, local: Vec3) -> Vec3 {
+        self.frame.to_world(local)
+    }
+
+    #[inline]
+    fn is_consistent(&self, wi: Vec3) -> bool {
+        self.untilted.is_none_or(|ns| ns.dot(wi) * self.frame.n.dot(wi) * self.facing(ns) > 0.0)
+    }
+
+    /// +1 if the frame's normal is on the side of `ns`, −1 if it was turned to the back.
+    fn facing(&self, ns: Vec3) -> f32 {
+        ns.dot(self.frame.n).signum()
+    }
+}
+
+/// The shading normal of the surface displaced along its normal by a texture (Blinn 1978).
+fn tilted(scene: &Scene, hit: &Hit, surface: &Surface, bump: Bump) -> Vec3 {
+    let n = surface.ns;
+    let tangents = scene.geometry.tangents(hit);
+    let slope = bump.scale * scene.textures.gradient(bump.texture, surface.uv);
+    let dpdu = tangents.dpdu + n * (slope.x - n.dot(tangents.dpdu));
+    let dpdv = tangents.dpdv + n * (slope.y - n.dot(tangents.dpdv));
+    match dpdu.cross(dpdv).try_normalize() {
+        Some(tilted) if tilted.dot(n) < 0.0 => -tilted,
+        Some(tilted) => tilted,
+        None => n,
+    }
+}
