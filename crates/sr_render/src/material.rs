@@ -4,8 +4,8 @@
 
 use glam::Vec2;
 use sr_bsdf::{
-    AnyBsdf, AnyModel, Conductor, Dielectric, Diffuse, Mask, Microfacet, MicrofacetKind, Plastic, RoughConductor,
-    RoughDielectric, RoughPlastic, RoughPlasticTables, SmoothCoat, ThinDielectric,
+    AnyBsdf, AnyModel, Conductor, Dielectric, Diffuse, Mask, Microfacet, MicrofacetKind, Plastic,
+    RoughConductor, RoughDielectric, RoughPlastic, RoughPlasticTables, SmoothCoat, ThinDielectric,
 };
 use sr_scene::{ColorInput, MaterialDesc, MaterialId, ScalarInput, TextureId};
 
@@ -123,10 +123,9 @@ impl Materials {
                     None => Ok(Side { bump: Some(Bump { scale: *scale, texture: *texture }), ..side }),
                 })?
             }
-            plain => Material {
-                front: Side { opacity: None, bump: None, model: self.model(plain) },
-                back: None,
-            },
+            plain => {
+                Material { front: Side { opacity: None, bump: None, model: self.model(plain) }, back: None }
+            }
         })
     }
 

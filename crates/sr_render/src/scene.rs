@@ -11,8 +11,8 @@ use sr_scene::{CameraDesc, Emission, LightDesc, MaterialId, MeshDesc, SceneDesc,
 use thiserror::Error;
 
 use crate::light::{
-    AreaLight, ConstantEnvironment, Delta, DirectionalLight, Environment, Extended, LightId, Lights, PointLight,
-    SpotLight, Triangle,
+    AreaLight, ConstantEnvironment, Delta, DirectionalLight, Environment, Extended, LightId, Lights,
+    PointLight, SpotLight, Triangle,
 };
 use crate::material::{MaterialError, Materials};
 use crate::texture::Textures;
@@ -65,14 +65,16 @@ impl Scene {
             .collect();
         let input =
             GeometryInput { shapes: desc.shapes.iter().map(input_shape).collect(), groups, instances };
-        let geometry = Geometry::build(&input)?;
+        let geometry = Geometry::build(input)?;
         let textures = Textures::new(&desc.textures, &desc.images);
         let materials = Materials::new(&desc.materials)?;
         let (lights, light_of_shape) = compile_lights(desc, &geometry, &textures)?;
         let world = desc.shapes.iter().zip(light_of_shape);
         let grouped = desc.groups.iter().flat_map(|g| &g.shapes).map(|shape| (shape, None));
-        let shapes =
-            world.chain(grouped).map(|(shape, light)| ShapeRecord { material: shape.material, light }).collect();
+        let shapes = world
+            .chain(grouped)
+            .map(|(shape, light)| ShapeRecord { material: shape.material, light })
+            .collect();
         Ok(Self {
             camera: desc.camera.clone(),
             settings: desc.settings.clone(),
@@ -169,7 +171,9 @@ fn compile_lights(
     let mut light_of_shape = vec![None; desc.shapes.len()];
     for (index, shape) in desc.shapes.iter().enumerate() {
         let Some(emission) = shape.emission else { continue };
-        let Some(light) = area_light(geometry, ShapeId(index as u32), shape, emission, textures) else { continue };
+        let Some(light) = area_light(geometry, ShapeId(index as u32), shape, emission, textures) else {
+            continue;
+        };
         let id = LightId(extended.len() as u32);
         extended.push(Extended::Area(light));
         light_of_shape[index] = Some(id);
@@ -202,7 +206,7 @@ fn compile_lights(
             }
         }
     }
-    let emitters = Geometry::build(&GeometryInput { shapes: emitters, ..GeometryInput::default() })?;
+    let emitters = Geometry::build(GeometryInput { shapes: emitters, ..GeometryInput::default() })?;
     let bounds = geometry.bounds();
     let radius = if bounds.is_empty() { 1.0 } else { 0.5 * (bounds.max - bounds.min).length() };
     Ok((Lights::new(extended, deltas, emitters, light_of_emitter, radius), light_of_shape))

@@ -86,7 +86,8 @@ impl Textures {
                 Texture::Checkerboard { colors, .. } => 0.5 * (colors[0] + colors[1]),
                 Texture::Bitmap { image, srgb, .. } => {
                     let image = &self.images[*image as usize];
-                    let (mut sum, count) = (glam::DVec3::ZERO, u64::from(image.width) * u64::from(image.height));
+                    let (mut sum, count) =
+                        (glam::DVec3::ZERO, u64::from(image.width) * u64::from(image.height));
                     for y in 0..image.height {
                         for x in 0..image.width {
                             sum += texel(image, *srgb, x, y).as_dvec3();
@@ -204,7 +205,8 @@ mod tests {
 
     fn textures(wrap: Wrap, filter: Filter, to_uv: Affine2) -> Textures {
         let data = vec![0.0, 1.0, 2.0, 3.0];
-        let image = Image { name: "t".into(), width: 2, height: 2, pixels: Pixels::F32 { channels: 1, data } };
+        let image =
+            Image { name: "t".into(), width: 2, height: 2, pixels: Pixels::F32 { channels: 1, data } };
         let desc = TextureDesc::Bitmap { image: 0, filter, wrap, srgb: false, to_uv, span: Span::default() };
         Textures::new(&[desc], &[Arc::new(image)])
     }

@@ -72,7 +72,7 @@ impl<'a> Vertex<'a> {
             _ => (&material.front, normal),
         };
         let frame = if side.is_anisotropic() {
-            Frame::along(normal, scene.geometry.tangents(hit).dpdu)
+            Frame::along(normal, scene.geometry.tangents(&surface, hit).dpdu)
         } else {
             Frame::about(normal)
         };
@@ -149,7 +149,7 @@ impl<'a> Vertex<'a> {
 /// The shading normal of the surface displaced along its normal by a texture (Blinn 1978).
 fn tilted(scene: &Scene, hit: &Hit, surface: &Surface, bump: Bump) -> Vec3 {
     let n = surface.ns;
-    let tangents = scene.geometry.tangents(hit);
+    let tangents = scene.geometry.tangents(surface, hit);
     let slope = bump.scale * scene.textures.gradient(bump.texture, surface.uv);
     let dpdu = tangents.dpdu + n * (slope.x - n.dot(tangents.dpdu));
     let dpdv = tangents.dpdv + n * (slope.y - n.dot(tangents.dpdv));

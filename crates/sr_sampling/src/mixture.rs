@@ -69,17 +69,17 @@ impl<D: Distribution, S: AsRef<[(f32, D)]>> Mixture<D, S> {
         self.parts.as_ref()
     }
 
-    /// The component that a uniform selects: the first whose cumulative weight exceeds it. Never one
-    /// of weight 0.
-    fn pick(&self, u: f32) -> &D {
+    /// The weight and the component that a uniform selects: the first whose cumulative weight exceeds
+    /// it. Never one of weight 0.
+    pub fn pick(&self, u: f32) -> &(f32, D) {
         let mut left = u * self.sum;
-        let mut last = &self.parts()[0].1;
-        for (weight, component) in self.parts().iter().filter(|(weight, _)| *weight > 0.0) {
-            if left < *weight {
-                return component;
+        let mut last = &self.parts()[0];
+        for part in self.parts().iter().filter(|(weight, _)| *weight > 0.0) {
+            if left < part.0 {
+                return part;
             }
-            left -= weight;
-            last = component;
+            left -= part.0;
+            last = part;
         }
         last
     }
@@ -90,7 +90,7 @@ impl<D: Distribution, S: AsRef<[(f32, D)]>> Distribution for Mixture<D, S> {
     type Uniform = (f32, D::Uniform);
 
     fn sample(&self, (u_pick, u): Self::Uniform) -> Option<Sample<D::Measure>> {
-        let value = self.pick(u_pick).sample(u)?.value;
+        let value = self.pick(u_pick).1.sample(u)?.value;
         let pdf = self.pdf(value); // of the mixture, not of the component
         (pdf > RealOf::<D>::ZERO).then_some(Sample { value, pdf })
     }

@@ -82,7 +82,9 @@ fn visible(scene: &Scene, from: &Surface, s: &LightSample) -> bool {
 
 /// Light from one of the lights that only light sampling can find.
 fn from_deltas(scene: &Scene, vertex: &Vertex<'_>, u_pick: f32) -> Rgb {
-    let Some(s) = scene.lights.sample_delta(vertex.surface.p, u_pick, &scene.textures) else { return Rgb::ZERO };
+    let Some(s) = scene.lights.sample_delta(vertex.surface.p, u_pick, &scene.textures) else {
+        return Rgb::ZERO;
+    };
     let f_cos = vertex.f_cos(s.wi);
     if f_cos == Rgb::ZERO || !visible(scene, &vertex.surface, &s) {
         return Rgb::ZERO;

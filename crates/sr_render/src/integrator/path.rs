@@ -3,7 +3,6 @@
 //! Kajiya (1986); multiple importance sampling after Veach & Guibas (1995).
 
 use glam::Vec3;
-use sr_bsdf::Bsdf;
 use sr_geometry::Ray;
 use sr_sampling::{Cursor, Sequence, power_weight};
 use sr_scene::Rgb;

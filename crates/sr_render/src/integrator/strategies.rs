@@ -21,7 +21,6 @@ use crate::light::SeenFrom;
 use crate::scene::Scene;
 use crate::strategy::{Basic, Density, MAX_TECHNIQUES, Strategy};
 use crate::vertex::Vertex;
-use sr_bsdf::Bsdf;
 
 /// Dimensions of one technique: component, lobe, direction (2).
 const DIMENSIONS_PER_TECHNIQUE: u32 = 4;
@@ -111,7 +110,11 @@ struct Step {
 }
 
 /// Draws a direction, delta lobes included.
-fn draw(technique: &Technique<'_>, vertex: &Vertex<'_>, (u_pick, u_lobe, u): (f32, f32, Vec2)) -> Option<Step> {
+fn draw(
+    technique: &Technique<'_>,
+    vertex: &Vertex<'_>,
+    (u_pick, u_lobe, u): (f32, f32, Vec2),
+) -> Option<Step> {
     let &(probability, component) = technique.pick(u_pick);
     let mut eta = 1.0;
     let wi = if let Component::Bsdf(_) = component {
@@ -154,7 +157,8 @@ impl Integrator for StrategyTracer {
                 break;
             }
             let dimension = FIRST_DIMENSION + (depth - 1) * DIMENSIONS_PER_VERTEX;
-            let Some((step, next_share)) = self.scatter(scene, &vertex, dimension, u, &mut path.li, beta) else {
+            let Some((step, next_share)) = self.scatter(scene, &vertex, dimension, u, &mut path.li, beta)
+            else {
                 break;
             };
             beta *= step.weight;
@@ -256,11 +260,12 @@ impl StrategyTracer {
 
         let densities_given = self.strategy.techniques();
         let main = densities_given.iter().position(Density::covers_surface);
-        let at_vertex: [Technique<'_>; MAX_TECHNIQUES] = std::array::from_fn(|i| match densities_given.get(i) {
-            Some(density) if vertex.lobes().delta => technique(scene, vertex, density.with_bsdf()),
-            Some(&density) => technique(scene, vertex, density),
-            None => bsdf_alone,
-        });
+        let at_vertex: [Technique<'_>; MAX_TECHNIQUES] =
+            std::array::from_fn(|i| match densities_given.get(i) {
+                Some(density) if vertex.lobes().delta => technique(scene, vertex, density.with_bsdf()),
+                Some(&density) => technique(scene, vertex, density),
+                None => bsdf_alone,
+            });
         let densities = |wi: Vec3| {
             let mut all = [0.0; MAX_TECHNIQUES];
             for ((p, technique), given) in all.iter_mut().zip(&at_vertex).zip(densities_given) {
@@ -277,14 +282,18 @@ impl StrategyTracer {
             }
             let (u_pick, u_lobe, u_direction) = uniforms(index);
             if given.covers_surface() {
-                let Some(step) = draw(&at_vertex[index], vertex, (u_pick, u_lobe, u_direction)) else { continue };
+                let Some(step) = draw(&at_vertex[index], vertex, (u_pick, u_lobe, u_direction)) else {
+                    continue;
+                };
                 if step.delta || step.weight == Rgb::ZERO {
                     continue;
                 }
-                let share =
-                    Share::Technique { from: vertex.surface.p, index, densities: densities(step.wi) };
-                *li += beta * step.weight * self.light_along(scene, &vertex.surface.spawn_ray(step.wi), share);
-            } else if let Some(s) = scene.lights.sample(vertex.surface.p, u_pick, u_direction, &scene.textures) {
+                let share = Share::Technique { from: vertex.surface.p, index, densities: densities(step.wi) };
+                *li +=
+                    beta * step.weight * self.light_along(scene, &vertex.surface.spawn_ray(step.wi), share);
+            } else if let Some(s) =
+                scene.lights.sample(vertex.surface.p, u_pick, u_direction, &scene.textures)
+            {
                 let f_cos = vertex.f_cos(s.wi);
                 if f_cos != Rgb::ZERO && visible(scene, &vertex.surface, &s) {
                     let weight = self.technique_weight(index, densities(s.wi), s.pdf);
@@ -303,9 +312,7 @@ impl StrategyTracer {
         };
         let share = match main {
             _ if step.delta => Share::All,
-            Some(index) => {
-                Share::Technique { from: vertex.surface.p, index, densities: densities(step.wi) }
-            }
+            Some(index) => Share::Technique { from: vertex.surface.p, index, densities: densities(step.wi) },
             None => Share::Nothing,
         };
         Some((step, share))

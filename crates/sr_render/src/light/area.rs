@@ -3,7 +3,7 @@
 use std::f32::consts::PI;
 
 use glam::{Vec2, Vec3};
-use sr_sampling::warp::{concentric_disk, uniform_triangle};
+use sr_sampling::warp::{barycentrics, concentric_disk};
 use sr_sampling::{AliasTable, to_solid_angle};
 use sr_scene::{ColorInput, Rgb};
 
@@ -111,10 +111,10 @@ impl AreaLight {
     pub fn sample(&self, from: Vec3, u_pick: f32, u: Vec2, textures: &Textures) -> Option<LightSample> {
         let point = match &self.form {
             Form::Mesh { triangles, by_area } => {
-                let t = &triangles[by_area.sample(u_pick).index];
-                let b = uniform_triangle(u);
-                let mix = |v: [Vec3; 3]| b.x * v[0] + b.y * v[1] + (1.0 - b.x - b.y) * v[2];
-                let uv = b.x * t.uvs[0] + b.y * t.uvs[1] + (1.0 - b.x - b.y) * t.uvs[2];
+                let t = &triangles[by_area.sample_and_reuse(u_pick).0.value];
+                let b = barycentrics(u);
+                let mix = |v: [Vec3; 3]| b.x * v[0] + b.y * v[1] + b.z * v[2];
+                let uv = b.x * t.uvs[0] + b.y * t.uvs[1] + b.z * t.uvs[2];
                 LightPoint { p: mix(t.positions), normal: t.normal, uv }
             }
             Form::Disk { center, u_axis, v_axis, normal } => {
@@ -192,13 +192,13 @@ mod sphere {
     use sr_sampling::warp::{UniformCone, UniformSphere};
 
     /// The cone of directions from `from`, outside, that meet the sphere.
-    fn cone(center: Vec3, radius: f32, from: Vec3) -> UniformCone {
-        let sin_squared = (radius * radius / (center - from).length_squared()).min(1.0);
-        UniformCone::from_sin_squared(sin_squared)
+    fn cone(center: Vec3, radius: f32, from: Vec3) -> Option<UniformCone> {
+        let sin2 = (radius * radius / (center - from).length_squared()).min(1.0);
+        UniformCone::from_sin2(sin2).ok()
     }
 
     pub(super) fn cone_pdf(center: Vec3, radius: f32, from: Vec3) -> f32 {
-        cone(center, radius, from).density()
+        cone(center, radius, from).map_or(0.0, |cone| 1.0 / cone.solid_angle())
     }
 
     /// A point of the visible cap, the direction to it and its density.
@@ -207,7 +207,7 @@ mod sphere {
         let distance = axis.length();
         let z = axis / distance;
         let (x, y) = z.any_orthonormal_pair();
-        let s = cone(center, radius, from).sample(u)?;
+        let s = cone(center, radius, from)?.sample(u)?;
         let wi = (x * s.value.x + y * s.value.y + z * s.value.z).normalize();
         // the nearer intersection, from the closest approach to the centre
         let along = axis.dot(wi);

@@ -74,7 +74,7 @@ impl Environment {
             scale,
             world_from_light,
             light_from_world: world_from_light.transpose(),
-            table: PiecewiseConstant2D::from_values(width, height, &weights).ok(),
+            table: PiecewiseConstant2D::new(&weights, width).ok(),
             mean_radiance: (mean / total_sin).as_vec3() * scale,
             image,
         }

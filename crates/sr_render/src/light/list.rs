@@ -6,7 +6,8 @@ use sr_sampling::{AliasTable, power_weight};
 use sr_scene::Rgb;
 
 use super::{
-    AreaLight, ConstantEnvironment, DirectionalLight, Environment, LightSample, PointLight, SeenFrom, SpotLight,
+    AreaLight, ConstantEnvironment, DirectionalLight, Environment, LightSample, PointLight, SeenFrom,
+    SpotLight,
 };
 use crate::texture::{Textures, luminance};
 
@@ -70,8 +71,8 @@ impl Choice {
         if self.pmf.len() == 1 && self.table.is_some() {
             return Some((0, 1.0, u));
         }
-        let s = self.table.as_ref()?.sample(u);
-        Some((s.index, s.pmf, s.u))
+        let (s, rest) = self.table.as_ref()?.sample_and_reuse(u);
+        Some((s.value, s.pdf, rest))
     }
 }
 
@@ -214,7 +215,12 @@ impl Lights {
     }
 
     /// The density over directions of one light, or of all, as seen from a point.
-    pub fn seen_from<'a>(&'a self, from: Vec3, only: Option<LightId>, textures: &'a Textures) -> SeenFrom<'a> {
+    pub fn seen_from<'a>(
+        &'a self,
+        from: Vec3,
+        only: Option<LightId>,
+        textures: &'a Textures,
+    ) -> SeenFrom<'a> {
         SeenFrom::new(self, from, only, textures)
     }
 

@@ -20,8 +20,8 @@ use glam::Vec3;
 use sr_scene::Rgb;
 
 pub use area::AreaLight;
-pub use environment::{ConstantEnvironment, Environment};
 pub(crate) use area::Triangle;
+pub use environment::{ConstantEnvironment, Environment};
 pub(crate) use list::{Delta, Extended};
 pub use list::{LightId, Lights};
 pub use point::{DirectionalLight, PointLight, SpotLight};

@@ -35,6 +35,12 @@ impl<'a, Q: Sequence> Cursor<'a, Q> {
         u
     }
 
+    /// Another walk of the same sample, from a dimension.
+    #[inline]
+    pub fn at(&self, dim: u32) -> Self {
+        Self { dim, ..*self }
+    }
+
     /// Jumps to a dimension, so that a fixed purpose keeps a fixed dimension.
     #[inline]
     pub fn seek(&mut self, dim: u32) {
