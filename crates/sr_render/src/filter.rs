@@ -113,7 +113,7 @@ mod tests {
 
     #[test]
     fn variance_is_the_filter_s() {
-        let expected = [1.0 / 12.0, 1.0 / 6.0, 0.2441];
+        let expected = [1.0 / 12.0, 1.0 / 6.0, 0.2486];
         for (filter, expected) in all().iter().zip(expected) {
             let n = 100_000;
             let sum: f64 = (0..n).map(|i| f64::from(filter.icdf((i as f32 + 0.5) / n as f32)).powi(2)).sum();
