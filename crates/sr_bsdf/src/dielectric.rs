@@ -49,7 +49,7 @@ impl Bsdf for Dielectric {
         }
         let wi = Vec3::new(-wo.x / split.eta, -wo.y / split.eta, -split.cos_t.copysign(wo.z));
         let weight = self.transmittance / (split.eta * split.eta);
-        Some(BsdfSample { wi, weight, pdf: 1.0 - split.reflectance, delta: true, eta: split.eta })
+        Some(BsdfSample { wi, weight, pdf: split.transmittance, delta: true, eta: split.eta })
     }
 
     #[inline]

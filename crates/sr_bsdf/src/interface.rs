@@ -11,6 +11,8 @@ use crate::Rgb;
 pub struct DielectricSplit {
     /// The fraction reflected, in [0, 1]; 1 under total internal reflection.
     pub reflectance: f32,
+    /// The fraction refracted, 1 − `reflectance`, to full relative precision where it is small.
+    pub transmittance: f32,
     /// |cos θ| of the refracted direction; 0 under total internal reflection.
     pub cos_t: f32,
     /// Index of the far side over that of the near side.
@@ -26,16 +28,18 @@ pub fn dielectric(cos_i: f32, eta: f32) -> DielectricSplit {
     let eta = if cos_i >= 0.0 { eta } else { 1.0 / eta };
     let c = cos_i.abs();
     if eta == 1.0 {
-        return DielectricSplit { reflectance: 0.0, cos_t: c, eta };
+        return DielectricSplit { reflectance: 0.0, transmittance: 1.0, cos_t: c, eta };
     }
     let cos_t_squared = 1.0 - (1.0 - c * c) / (eta * eta);
     if cos_t_squared <= 0.0 {
-        return DielectricSplit { reflectance: 1.0, cos_t: 0.0, eta };
+        return DielectricSplit { reflectance: 1.0, transmittance: 0.0, cos_t: 0.0, eta };
     }
     let cos_t = cos_t_squared.sqrt();
-    let s = (c - eta * cos_t) / (c + eta * cos_t);
-    let p = (eta * c - cos_t) / (eta * c + cos_t);
-    DielectricSplit { reflectance: 0.5 * (s * s + p * p), cos_t, eta }
+    // Of the squared field, light polarised across (s) and in (p) the plane of incidence loses 4 c η cₜ over
+    // (c + η cₜ)² and (η c + cₜ)² to the far side.
+    let (s, p) = (1.0 / (c + eta * cos_t), 1.0 / (eta * c + cos_t));
+    let transmittance = (2.0 * c * eta * cos_t * (s * s + p * p)).min(1.0);
+    DielectricSplit { reflectance: 1.0 - transmittance, transmittance, cos_t, eta }
 }
 
 /// The fraction of light that a conductor reflects (Fresnel's equations, unpolarised).
@@ -124,8 +128,8 @@ mod tests {
     fn fresnel_at_normal_incidence_is_the_squared_contrast() {
         for eta in [1.1_f32, 1.5, 2.4, 0.7] {
             let expected = ((eta - 1.0) / (eta + 1.0)).powi(2);
-            assert!((dielectric(1.0, eta).reflectance - expected).abs() < 1e-7);
-            assert!((dielectric(-1.0, eta).reflectance - expected).abs() < 1e-7);
+            assert!((dielectric(1.0, eta).reflectance - expected).abs() < 2e-7);
+            assert!((dielectric(-1.0, eta).reflectance - expected).abs() < 2e-7);
         }
     }
 
@@ -137,7 +141,7 @@ mod tests {
         let cos = 1.0 / (1.0 + eta * eta).sqrt();
         let split = dielectric(cos, eta);
         let s = (cos - eta * split.cos_t) / (cos + eta * split.cos_t);
-        assert!((split.reflectance - 0.5 * s * s).abs() < 1e-7);
+        assert!((split.reflectance - 0.5 * s * s).abs() < 2e-7);
         assert!((split.cos_t - (1.0 - cos * cos).sqrt()).abs() < 1e-6);
     }
 
@@ -151,7 +155,10 @@ mod tests {
     #[test]
     fn an_interface_between_equal_media_is_not_there() {
         for cos in [1.0, 0.3, 1e-20, 0.0] {
-            assert_eq!(dielectric(cos, 1.0), DielectricSplit { reflectance: 0.0, cos_t: cos, eta: 1.0 });
+            assert_eq!(
+                dielectric(cos, 1.0),
+                DielectricSplit { reflectance: 0.0, transmittance: 1.0, cos_t: cos, eta: 1.0 }
+            );
             assert!(dielectric(cos, 1.0 + f32::EPSILON).reflectance.is_finite());
         }
     }

@@ -59,7 +59,7 @@ impl Bsdf for Plastic {
             return Rgb::ZERO;
         }
         let (split_o, split_i) = (dielectric(wo.z, self.eta), dielectric(wi.z, self.eta));
-        self.base * ((1.0 - split_o.reflectance) * (1.0 - split_i.reflectance) * FRAC_1_PI)
+        self.base * (split_o.transmittance * split_i.transmittance * FRAC_1_PI)
     }
 
     #[inline]
@@ -67,18 +67,18 @@ impl Bsdf for Plastic {
         if wo.z <= 0.0 {
             return None;
         }
-        let f = dielectric(wo.z, self.eta).reflectance;
-        let p = self.choice.given_reflectance(f);
+        let split = dielectric(wo.z, self.eta);
+        let p = self.choice.given_transmittance(split.transmittance);
         if u_lobe < p.specular {
-            let weight = self.specular * (f / p.specular);
+            let weight = self.specular * (split.reflectance / p.specular);
             return Some(BsdfSample { wi: reflect(wo), weight, pdf: p.specular, delta: true, eta: 1.0 });
         }
         if p.diffuse == 0.0 {
             return None;
         }
         let s = CosineHemisphere.sample(u)?;
-        let f_i = dielectric(s.value.z, self.eta).reflectance;
-        let weight = self.base * ((1.0 - f_i) * ((1.0 - f) / p.diffuse));
+        let t_i = dielectric(s.value.z, self.eta).transmittance;
+        let weight = self.base * (t_i * (split.transmittance / p.diffuse));
         Some(BsdfSample { wi: s.value, weight, pdf: p.diffuse * s.pdf, delta: false, eta: 1.0 })
     }
 
@@ -87,7 +87,7 @@ impl Bsdf for Plastic {
         if wo.z <= 0.0 || wi.z <= 0.0 {
             return 0.0;
         }
-        let p = self.choice.given_reflectance(dielectric(wo.z, self.eta).reflectance);
+        let p = self.choice.given_transmittance(dielectric(wo.z, self.eta).transmittance);
         p.diffuse * CosineHemisphere.pdf(wi)
     }
 
@@ -98,8 +98,8 @@ impl Bsdf for Plastic {
 
     #[inline]
     fn albedo(&self) -> Rgb {
-        let f = dielectric(1.0, self.eta).reflectance;
-        f * self.specular + (1.0 - f) * (1.0 - f) * self.base
+        let split = dielectric(1.0, self.eta);
+        split.reflectance * self.specular + split.transmittance * split.transmittance * self.base
     }
 }
 
@@ -133,16 +133,15 @@ impl LobeChoice {
         Self { specular: specular.element_sum(), diffuse: diffuse.element_sum() }
     }
 
-    /// Given the fraction of light that the coating reflects.
+    /// Given the fraction of light that the coating lets through.
     #[inline]
-    pub fn given_reflectance(&self, f: f32) -> LobeProbabilities {
-        let (specular, diffuse) = (f * self.specular, (1.0 - f) * self.diffuse);
+    pub fn given_transmittance(&self, t: f32) -> LobeProbabilities {
+        let (specular, diffuse) = ((1.0 - t) * self.specular, t * self.diffuse);
         let sum = specular + diffuse;
         if sum < f32::MIN_POSITIVE {
             return LobeProbabilities { specular: 0.0, diffuse: 0.0 };
         }
-        let specular = specular / sum;
-        LobeProbabilities { specular, diffuse: 1.0 - specular }
+        LobeProbabilities { specular: specular / sum, diffuse: diffuse / sum }
     }
 }
 

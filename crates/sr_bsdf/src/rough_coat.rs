@@ -32,7 +32,7 @@ impl RoughPlasticTables {
             mean_over_visible_normals(&distribution, node(i), |wo, m| {
                 let split = dielectric(wo.dot(m), eta);
                 let wi = refract_about(wo, m, split);
-                if wi.z < 0.0 { (1.0 - split.reflectance) * distribution.g1(wi) } else { 0.0 }
+                if wi.z < 0.0 { split.transmittance * distribution.g1(wi) } else { 0.0 }
             })
         });
         let reflectance_inside = |cos: f32| {
@@ -114,7 +114,7 @@ mod tests {
         for kind in [MicrofacetKind::Beckmann, MicrofacetKind::Ggx] {
             let tables = RoughPlasticTables::new(kind, 1e-3, 1.5);
             for cos in [0.4, 0.6, 0.8, 1.0] {
-                let smooth = 1.0 - dielectric(cos, 1.5).reflectance;
+                let smooth = dielectric(cos, 1.5).transmittance;
                 assert!((tables.transmittance(cos) - smooth).abs() < 1e-3, "{kind:?} {cos}");
             }
         }

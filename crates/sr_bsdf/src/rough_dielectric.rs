@@ -60,7 +60,7 @@ fn refracting_facet(wo: Vec3, wi: Vec3, eta: f32) -> Option<RefractingFacet> {
     if cos_o <= 0.0 || cos_i <= 0.0 || length_squared == 0.0 {
         return None;
     }
-    let factor = (1.0 - dielectric(cos_o, eta).reflectance) * cos_i / length_squared;
+    let factor = dielectric(cos_o, eta).transmittance * cos_i / length_squared;
     Some(RefractingFacet { m, factor, cos_o })
 }
 
@@ -114,7 +114,7 @@ impl Bsdf for RoughDielectric {
             // wo · m + η wi · m = cos_o − η cos_t, without the cancellation for η near 1.
             let half_length = (1.0 - eta * eta) / (cos_o + eta * split.cos_t);
             let jacobian = eta * eta * split.cos_t / (half_length * half_length);
-            let pdf = (1.0 - split.reflectance) * self.distribution.visible_pdf(wo, m) * jacobian;
+            let pdf = split.transmittance * self.distribution.visible_pdf(wo, m) * jacobian;
             BsdfSample { wi, weight: self.transmittance / (eta * eta), pdf, delta: false, eta }
         };
         let wi = if above { sample.wi } else { flip(sample.wi) };

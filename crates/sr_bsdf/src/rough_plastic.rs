@@ -51,7 +51,7 @@ impl<'a> RoughPlastic<'a> {
 
     #[inline]
     fn lobe_probabilities(&self, t_o: f32) -> LobeProbabilities {
-        self.choice.given_reflectance(1.0 - t_o)
+        self.choice.given_transmittance(t_o)
     }
 }
 

@@ -4,5 +4,5 @@ pub mod bsdfs;
 pub mod distributions;
 pub mod lobe;
 
-pub use bsdfs::bsdf_cases;
+pub use bsdfs::{BsdfCase, bsdf_cases, bsdf_models};
 pub use distributions::{DistributionCase, distribution_cases};

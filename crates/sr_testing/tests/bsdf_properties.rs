@@ -3,13 +3,17 @@
 use glam::{Vec2, Vec3};
 use sr_bsdf::{AnyBsdf, Bsdf, BsdfSample};
 use sr_sampling::{Independent, SampleId, Sequence};
-use sr_testing::bsdf_cases;
-use sr_testing::bsdfs::BsdfCase;
 
-/// All cases, and proof that there are some.
+use sr_testing::{BsdfCase, bsdf_cases, bsdf_models};
+
+/// All cases, more from along the normal and from grazing angles, and proof that there are some.
 fn cases() -> Vec<BsdfCase> {
-    let cases = bsdf_cases();
+    let mut cases = bsdf_cases();
     assert!(cases.len() > 100, "no cases, no evidence");
+    let hard = [Vec3::Z, Vec3::new(0.6, 0.8, 0.02), Vec3::new(0.8, -0.6, 1e-3)].map(Vec3::normalize);
+    for (name, bsdf) in bsdf_models() {
+        cases.extend(hard.map(|wo| (format!("{name}, from {wo}"), bsdf, wo)));
+    }
     cases
 }
 
@@ -82,7 +86,8 @@ fn sample_agrees_with_eval_and_pdf() {
 }
 
 /// f(wo, wi) = f(wi, wo) for reflection; for transmission up to η², as radiance is scaled by 1/η².
-/// Rounding is magnified by the exponential of a Beckmann tail, and at the critical angle.
+/// Rounding is magnified by the exponential of a Beckmann tail, at the critical angle, and where a facet is seen
+/// edge-on.
 #[test]
 fn light_may_travel_either_way() {
     let mut checked = 0;
@@ -93,7 +98,7 @@ fn light_may_travel_either_way() {
             let scale = if wo.z * wi.z > 0.0 { 1.0 } else { eta * eta };
             let (there, back) = (bsdf.eval(wo, wi) * scale, bsdf.eval(wi, wo));
             let error = (there - back).abs().max_element();
-            assert!(error <= 0.01 * there.max_element() + 1e-6, "{name}, wi = {wi}: {there} {back}");
+            assert!(error <= 0.01 * there.max_element() + 1e-5, "{name}, wi = {wi}: {there} {back}");
             checked += usize::from(there.max_element() > 1e-4);
         }
     }
