@@ -16,7 +16,7 @@ pub struct Cell {
 const MIN_EXPECTED: f64 = 5.0;
 
 /// Of samples where none were expected, rounding at a rim explains this share of all.
-const STRAY_SHARE: f64 = 1e-5;
+pub(super) const STRAY_SHARE: f64 = 1e-5;
 
 /// Do observed counts follow expected ones? The cells make up everything that can happen.
 ///

@@ -77,9 +77,9 @@ impl Patch {
         let steps = largest_steps(&values);
         let top = values.iter().flatten().fold(0.0, |a: f64, &b| a.max(b));
         let mut best = Integral { value: whole, error: -1.0, axis: 0 };
-        for axis in 0..axes {
+        for (axis, step) in steps.into_iter().enumerate().take(axes) {
             let value = self.halves(axis).iter().map(|half| half.integrate(f)).sum::<f64>();
-            let jump = if steps[axis] > JUMP * top { JUMP_ERROR * steps[axis] * self.area() } else { 0.0 };
+            let jump = if step > JUMP * top { JUMP_ERROR * step * self.area() } else { 0.0 };
             let error = (value - whole).abs().max(jump);
             if error > best.error || error.is_nan() {
                 best = Integral { value, error, axis };
@@ -91,14 +91,9 @@ impl Patch {
 
 /// The largest difference between neighbours, along each axis.
 fn largest_steps(values: &[[f64; 5]; 5]) -> [f64; 2] {
-    let mut steps = [0.0_f64; 2];
-    for i in 0..5 {
-        for j in 0..4 {
-            steps[0] = steps[0].max((values[j + 1][i] - values[j][i]).abs());
-            steps[1] = steps[1].max((values[i][j + 1] - values[i][j]).abs());
-        }
-    }
-    steps
+    let along_0 = values.windows(2).flat_map(|pair| (0..5).map(|j| (pair[1][j] - pair[0][j]).abs()));
+    let along_1 = values.iter().flat_map(|row| row.windows(2).map(|pair| (pair[1] - pair[0]).abs()));
+    [along_0.fold(0.0, f64::max), along_1.fold(0.0, f64::max)]
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use sr_sampling::{Cursor, Distribution, Independent, Measure, Real, Sample, Samp
 
 use super::Chi2Settings;
 use super::chart::{Chart, Coordinates};
-use super::pearson::{Cell, pearson};
+use super::pearson::{Cell, STRAY_SHARE, pearson};
 use super::quadrature::{Integral, Patch};
 use crate::report::TestReport;
 
@@ -39,7 +39,13 @@ pub fn draw<D: Distribution>(
 pub struct Tally {
     samples: u64,
     none: u64,
+    /// Samples whose `pdf` is not a positive number.
+    broken: u64,
+    /// Samples where the density is 0.
+    stray: u64,
+    /// Samples whose `pdf` is not the density at them.
     wrong_pdf: u64,
+    /// The first sample of any of these kinds.
     example: String,
 }
 
@@ -56,25 +62,36 @@ impl Tally {
             return None;
         };
         let (said, is) = (sample.pdf.to_f64(), distribution.pdf(sample.value).to_f64());
-        let agree = (said - is).abs() <= PDF_TOLERANCE * said.max(is);
-        if !(said > 0.0 && said.is_finite() && agree) {
-            self.wrong_pdf += 1;
-            if self.example.is_empty() {
-                self.example = format!("{:?} was drawn with pdf {said}, but pdf there is {is}", sample.value);
-            }
+        let broken = !(said > 0.0 && said.is_finite());
+        let stray = is == 0.0;
+        let wrong = is.is_nan() || (said - is).abs() > PDF_TOLERANCE * said.max(is);
+        self.broken += u64::from(broken);
+        self.stray += u64::from(stray);
+        self.wrong_pdf += u64::from(wrong);
+        if (broken || stray || wrong) && self.example.is_empty() {
+            self.example = format!("{:?} was drawn with pdf {said}, the density there is {is}", sample.value);
         }
         Some(sample)
     }
 
     /// What is certainly wrong, if anything. `outside`: how many samples the chart does not cover.
     pub fn verdict(&self, outside: u64) -> Option<TestReport> {
-        let Self { samples, wrong_pdf, example, .. } = self;
-        if *wrong_pdf as f64 > PDF_OUTLIERS * *samples as f64 {
-            let remark = format!("{wrong_pdf} of {samples} samples carry a wrong pdf: {example}");
-            return Some(TestReport::impossible(remark));
-        }
-        (outside > 0)
-            .then(|| TestReport::impossible(format!("{outside} of {samples} samples lie outside the domain")))
+        let Self { samples, broken, stray, wrong_pdf, example, .. } = self;
+        let n = *samples as f64;
+        let (count, what) = if *broken > 0 {
+            (*broken, "carry a pdf that is not a positive number")
+        } else if *stray as f64 > STRAY_SHARE * n {
+            (*stray, "lie where the density is 0")
+        } else if *wrong_pdf as f64 > PDF_OUTLIERS * n {
+            (*wrong_pdf, "carry a pdf that is not the density there")
+        } else if outside > 0 {
+            return Some(TestReport::impossible(format!(
+                "{outside} of {samples} samples lie outside the domain"
+            )));
+        } else {
+            return None;
+        };
+        Some(TestReport::impossible(format!("{count} of {samples} samples {what}: {example}")))
     }
 
     /// Adds the cell of samples that are `None`. The rest of the integral is known up to `error`:
