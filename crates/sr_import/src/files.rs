@@ -1,0 +1,59 @@
+//! Opening what a scene file names: only regular files, only up to a size, found along search paths.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+/// Larger files are refused.
+pub const MAX_FILE_BYTES: u64 = 4 << 30;
+/// Larger scene files are refused.
+pub const MAX_SCENE_BYTES: u64 = 256 << 20;
+
+/// The whole content of a regular file of at most `limit` bytes; the error is half a sentence.
+pub fn read(path: &Path, limit: u64) -> Result<Vec<u8>, String> {
+    // Looked at before it is opened: opening a FIFO would wait for a writer.
+    let metadata = std::fs::metadata(path).map_err(|e| reason(&e))?;
+    if metadata.is_dir() {
+        return Err("it is a directory".into());
+    }
+    if !metadata.is_file() {
+        return Err("it is not a regular file".into());
+    }
+    if metadata.len() > limit {
+        return Err(format!("it has {} bytes; at most {limit} are read", metadata.len()));
+    }
+    let file = File::open(path).map_err(|e| reason(&e))?;
+    let mut bytes = Vec::new();
+    file.take(limit + 1).read_to_end(&mut bytes).map_err(|e| reason(&e))?;
+    if bytes.len() as u64 > limit {
+        return Err(format!("it grew beyond {limit} bytes while being read"));
+    }
+    Ok(bytes)
+}
+
+fn reason(error: &std::io::Error) -> String {
+    match error.kind() {
+        std::io::ErrorKind::NotFound => "there is no such file".into(),
+        std::io::ErrorKind::PermissionDenied => "permission denied".into(),
+        _ => error.to_string(),
+    }
+}
+
+/// The first directory's `name` that exists, or the first candidate if none does.
+pub fn find(name: &str, directories: &[PathBuf]) -> PathBuf {
+    let path = Path::new(name);
+    if path.is_absolute() {
+        return path.to_owned();
+    }
+    let mut candidates = directories.iter().map(|d| d.join(path));
+    let found = candidates.clone().find(|c| c.exists());
+    found.or_else(|| candidates.next()).unwrap_or_else(|| path.to_owned())
+}
+
+/// The names in the directory where `path` was expected, for a guess at a misspelt file name.
+pub fn siblings(path: &Path) -> Vec<String> {
+    const ENOUGH: usize = 4096;
+    let Some(directory) = path.parent() else { return Vec::new() };
+    let Ok(entries) = std::fs::read_dir(directory) else { return Vec::new() };
+    entries.flatten().take(ENOUGH).map(|e| e.file_name().to_string_lossy().into_owned()).collect()
+}

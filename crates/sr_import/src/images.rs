@@ -1,0 +1,167 @@
+//! Image files to [`Image`]s.
+
+use std::io::Cursor;
+use std::path::Path;
+
+use image::{DynamicImage, ImageReader, Limits};
+use sr_scene::{Image, Pixels};
+
+use crate::files;
+use crate::values::srgb_to_linear;
+
+/// Images of more texels are refused before anything is allocated.
+const MAX_TEXELS: u64 = 1 << 28;
+
+/// What the values of a file mean.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Decode {
+    /// Colors: 8-bit values stay as they are, 16-bit ones are sRGB-decoded.
+    Color,
+    /// Numbers: roughness, bumps, masks. No value is changed.
+    Raw,
+    /// Radiance: everything is made linear floating point.
+    Linear,
+}
+
+/// Reads a file; the error is half a sentence.
+pub fn load(path: &Path, decode: Decode) -> Result<Image, String> {
+    let bytes = files::read(path, files::MAX_FILE_BYTES)?;
+    let (width, height, pixels) = if bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
+        open_exr(&bytes)?
+    } else {
+        open_other(path, bytes, decode)?
+    };
+    Ok(Image { name: path.display().to_string(), width, height, pixels })
+}
+
+fn open_other(path: &Path, bytes: Vec<u8>, decode: Decode) -> Result<(u32, u32, Pixels), String> {
+    let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
+    if reader.format().is_none()
+        && let Ok(format) = image::ImageFormat::from_path(path)
+    {
+        // TGA has no magic number.
+        reader.set_format(format);
+    }
+    if reader.format().is_none() {
+        return Err(
+            "its format is not known (PNG, JPEG, BMP, TGA, HDR, PNM, WebP, TIFF and OpenEXR are)".into()
+        );
+    }
+    let mut limits = Limits::default();
+    (limits.max_image_width, limits.max_image_height) = (Some(1 << 20), Some(1 << 20));
+    limits.max_alloc = Some(MAX_TEXELS * 16);
+    reader.limits(limits);
+    let decoder = reader.into_decoder().map_err(|e| e.to_string())?;
+    let (width, height) = image::ImageDecoder::dimensions(&decoder);
+    check_size(u64::from(width), u64::from(height))?;
+    let image = DynamicImage::from_decoder(decoder).map_err(|e| e.to_string())?;
+    Ok((width, height, convert(image, decode)))
+}
+
+fn check_size(width: u64, height: u64) -> Result<(), String> {
+    match width.checked_mul(height) {
+        Some(0) => Err("it has no pixels".into()),
+        Some(n) if n <= MAX_TEXELS => Ok(()),
+        _ => Err(format!("it has {width} × {height} pixels; at most {MAX_TEXELS} are read")),
+    }
+}
+
+fn convert(image: DynamicImage, decode: Decode) -> Pixels {
+    use DynamicImage as D;
+    let channels: u8 = match image.color().channel_count() {
+        1 => 1,
+        // Grey with alpha is kept as RGBA: two channels are not among the forms of an image.
+        2 | 4 => 4,
+        _ => 3,
+    };
+    let bytes = matches!(image, D::ImageLuma8(_) | D::ImageLumaA8(_) | D::ImageRgb8(_) | D::ImageRgba8(_));
+    if bytes {
+        let data = match channels {
+            1 => image.into_luma8().into_raw(),
+            3 => image.into_rgb8().into_raw(),
+            _ => image.into_rgba8().into_raw(),
+        };
+        return match decode {
+            Decode::Linear => Pixels::F32 { channels, data: linear_bytes(&data, channels) },
+            Decode::Color | Decode::Raw => Pixels::U8 { channels, data },
+        };
+    }
+    let float = matches!(image, D::ImageRgb32F(_) | D::ImageRgba32F(_));
+    let mut data = match channels {
+        1 => image.into_luma16().into_raw().iter().map(|&v| f32::from(v) / 65535.0).collect(),
+        3 => image.into_rgb32f().into_raw(),
+        _ => image.into_rgba32f().into_raw(),
+    };
+    if !float && decode != Decode::Raw {
+        for texel in data.chunks_exact_mut(channels.into()) {
+            texel.iter_mut().take(3).for_each(|v| *v = srgb_to_linear(f64::from(*v)) as f32);
+        }
+    }
+    data.iter_mut().for_each(|v| *v = finite(*v));
+    Pixels::F32 { channels, data }
+}
+
+fn linear_bytes(data: &[u8], channels: u8) -> Vec<f32> {
+    let table: Vec<f32> = (0..256).map(|v| srgb_to_linear(f64::from(v) / 255.0) as f32).collect();
+    data.iter()
+        .enumerate()
+        .map(
+            |(i, &v)| {
+                if i % usize::from(channels) == 3 { f32::from(v) / 255.0 } else { table[usize::from(v)] }
+            },
+        )
+        .collect()
+}
+
+/// Pixels that are not numbers are black; infinite ones are the largest number of half precision.
+fn finite(value: f32) -> f32 {
+    if value.is_nan() { 0.0 } else { value.clamp(-65504.0, f32::MAX) }
+}
+
+fn open_exr(bytes: &[u8]) -> Result<(u32, u32, Pixels), String> {
+    use exr::prelude::*;
+    let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(|e| e.to_string())?;
+    for header in &meta.headers {
+        check_size(header.layer_size.x() as u64, header.layer_size.y() as u64)?;
+        if header.deep {
+            return Err("it has deep data".into());
+        }
+    }
+    let image = read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .first_valid_layer()
+        .all_attributes()
+        .from_buffered(Cursor::new(bytes))
+        .map_err(|e| e.to_string())?;
+    let layer = image.layer_data;
+    let channel = |names: &[&str]| {
+        layer.channel_data.list.iter().find(|c| {
+            let name = c.name.to_string();
+            let last = name.rsplit('.').next().unwrap_or("").to_owned();
+            names.iter().any(|n| last.eq_ignore_ascii_case(n))
+        })
+    };
+    let picked = match (channel(&["R", "red"]), channel(&["G", "green"]), channel(&["B", "blue"])) {
+        (Some(r), Some(g), Some(b)) => vec![r, g, b],
+        _ => {
+            let luminance = channel(&["Y"]).or_else(|| layer.channel_data.list.first());
+            vec![luminance.ok_or("it has no channels")?]
+        }
+    };
+    if picked.iter().any(|c| c.sampling != Vec2(1, 1)) {
+        return Err("its color channels are subsampled".into());
+    }
+    let count = layer.size.area();
+    let channels = picked.len();
+    let mut data = vec![0.0; count * channels];
+    for (offset, channel) in picked.iter().enumerate() {
+        for (slot, value) in
+            data.iter_mut().skip(offset).step_by(channels).zip(channel.sample_data.values_as_f32())
+        {
+            *slot = finite(value);
+        }
+    }
+    Ok((layer.size.x() as u32, layer.size.y() as u32, Pixels::F32 { channels: channels as u8, data }))
+}

@@ -1,0 +1,306 @@
+//! BSDFs.
+
+use sr_scene::{ColorInput, Diagnostic, MaterialDesc, MaterialId, MicrofacetKind, Rgb, ScalarInput};
+
+use super::color::Role;
+use super::{Lowering, key};
+use crate::node::{Node, Value};
+use crate::props::Props;
+use crate::tables;
+
+const KNOWN: &[&str] = &[
+    "diffuse",
+    "dielectric",
+    "thindielectric",
+    "conductor",
+    "roughconductor",
+    "roughdielectric",
+    "plastic",
+    "roughplastic",
+    "twosided",
+    "mask",
+    "bumpmap",
+    "null",
+];
+const GREY: Rgb = Rgb::splat(0.5);
+
+impl<'a> Lowering<'a, '_> {
+    /// The material of a BSDF; each node is lowered once.
+    pub(super) fn material(&mut self, node: &'a Node) -> MaterialId {
+        if let Some(&done) = self.materials_done.get(&key(node)) {
+            return done;
+        }
+        if node.class != "bsdf" {
+            let message = format!("a BSDF was expected, not {}", node.title());
+            self.d.push(Diagnostic::error("mitsuba::wrong-type", &node.span, message));
+            return self.default_material(node);
+        }
+        if !self.open.insert(key(node)) {
+            let message = format!("{} contains itself", node.title());
+            self.d.push(Diagnostic::error("mitsuba::cycle", &node.span, message));
+            return self.default_material(node);
+        }
+        let mut props = Props::new(node);
+        let desc = self.material_kind(node, &mut props);
+        props.finish(self.d);
+        self.open.remove(&key(node));
+        let id = match desc {
+            Lowered::New(desc) => self.add_material(desc, node),
+            Lowered::Same(id) => id,
+        };
+        self.materials_done.insert(key(node), id);
+        id
+    }
+
+    /// What a shape without a BSDF is made of.
+    pub(super) fn default_material(&mut self, node: &Node) -> MaterialId {
+        self.add_material(diffuse(GREY), node)
+    }
+
+    fn add_material(&mut self, desc: MaterialDesc, node: &Node) -> MaterialId {
+        self.materials.push(desc);
+        self.material_spans.push(node.span.clone());
+        MaterialId(self.materials.len() as u32 - 1)
+    }
+
+    fn material_kind(&mut self, node: &'a Node, props: &mut Props<'a>) -> Lowered {
+        props.ignore(&["sample_visible", "specular_sampling_weight"]);
+        let desc = match node.kind.as_str() {
+            "diffuse" => MaterialDesc::Diffuse { reflectance: self.factor(props, "reflectance", GREY) },
+            "dielectric" | "thindielectric" => {
+                let eta = self.eta(props, "bk7");
+                let specular_reflectance = self.factor(props, "specular_reflectance", Rgb::ONE);
+                let specular_transmittance = self.factor(props, "specular_transmittance", Rgb::ONE);
+                if node.kind == "dielectric" {
+                    MaterialDesc::Dielectric { eta, specular_reflectance, specular_transmittance }
+                } else {
+                    MaterialDesc::ThinDielectric { eta, specular_reflectance, specular_transmittance }
+                }
+            }
+            "roughdielectric" => MaterialDesc::RoughDielectric {
+                kind: self.distribution(props),
+                alpha: self.alpha(props),
+                eta: self.eta(props, "bk7"),
+                specular_reflectance: self.factor(props, "specular_reflectance", Rgb::ONE),
+                specular_transmittance: self.factor(props, "specular_transmittance", Rgb::ONE),
+            },
+            "conductor" => MaterialDesc::Conductor {
+                eta_k: self.eta_k(props),
+                specular_reflectance: self.factor(props, "specular_reflectance", Rgb::ONE),
+            },
+            "roughconductor" => MaterialDesc::RoughConductor {
+                kind: self.distribution(props),
+                alpha: self.alpha(props),
+                eta_k: self.eta_k(props),
+                specular_reflectance: self.factor(props, "specular_reflectance", Rgb::ONE),
+            },
+            "plastic" => MaterialDesc::Plastic {
+                eta: self.eta(props, "polypropylene"),
+                diffuse_reflectance: self.factor(props, "diffuse_reflectance", GREY),
+                specular_reflectance: self.factor(props, "specular_reflectance", Rgb::ONE),
+                nonlinear: props.boolean("nonlinear", self.d).unwrap_or(false),
+            },
+            "roughplastic" => MaterialDesc::RoughPlastic {
+                kind: self.distribution(props),
+                alpha: self.constant_alpha(props),
+                eta: self.eta(props, "polypropylene"),
+                diffuse_reflectance: self.factor(props, "diffuse_reflectance", GREY),
+                specular_reflectance: self.factor(props, "specular_reflectance", Rgb::ONE),
+                nonlinear: props.boolean("nonlinear", self.d).unwrap_or(false),
+            },
+            "twosided" => {
+                let nested = self.nested(props, "bsdf");
+                match nested[..] {
+                    [one] => {
+                        let side = self.material(one);
+                        MaterialDesc::TwoSided { front: side, back: side }
+                    }
+                    [front, back] => {
+                        MaterialDesc::TwoSided { front: self.material(front), back: self.material(back) }
+                    }
+                    _ => return self.wrong_nesting(node, "one or two BSDFs", nested.len()),
+                }
+            }
+            "mask" => {
+                let opacity = self.scalar(props, "opacity", 0.5);
+                match self.nested(props, "bsdf")[..] {
+                    [inner] => MaterialDesc::Mask { opacity, inner: self.material(inner) },
+                    ref others => return self.wrong_nesting(node, "one BSDF", others.len()),
+                }
+            }
+            "null" => {
+                let inner = self.default_material(node);
+                MaterialDesc::Mask { opacity: ScalarInput::Constant(0.0), inner }
+            }
+            "bumpmap" => return self.bump_map(node, props),
+            _ => return self.stand_in(node, props),
+        };
+        Lowered::New(desc)
+    }
+
+    fn factor(&mut self, props: &mut Props<'a>, name: &'static str, default: Rgb) -> ColorInput {
+        self.color(props, name, default, Role::Factor)
+    }
+
+    fn wrong_nesting(&mut self, node: &Node, expected: &str, found: usize) -> Lowered {
+        let message = format!("{} needs {expected} inside it, not {found}", node.title());
+        self.d.push(Diagnostic::error("mitsuba::wrong-nesting", &node.span, message));
+        Lowered::New(diffuse(GREY))
+    }
+
+    fn bump_map(&mut self, node: &'a Node, props: &mut Props<'a>) -> Lowered {
+        let scale = props.float("scale", self.d).unwrap_or(1.0);
+        // The texture goes by several names; it is the only one there can be.
+        let textures = self.nested(props, "texture");
+        let inner = match self.nested(props, "bsdf")[..] {
+            [inner] => self.material(inner),
+            ref others => return self.wrong_nesting(node, "one BSDF", others.len()),
+        };
+        let [texture] = textures[..] else {
+            return self.wrong_nesting(node, "one texture", textures.len());
+        };
+        match self.texture(texture, Role::Factor) {
+            ColorInput::Texture(texture) => Lowered::New(MaterialDesc::BumpMap { scale, texture, inner }),
+            // A constant displacement tilts nothing.
+            ColorInput::Constant(_) => Lowered::Same(inner),
+        }
+    }
+
+    /// What is shown instead of a model that is not supported: its first nested BSDF, or diffuse with its color.
+    fn stand_in(&mut self, node: &'a Node, props: &mut Props<'a>) -> Lowered {
+        if let [inner, ..] = self.nested(props, "bsdf")[..] {
+            let id = self.material(inner);
+            props.use_all();
+            self.unknown_plugin(node, KNOWN, &format!("its first nested {} is shown instead", inner.title()));
+            return Lowered::Same(id);
+        }
+        const COLORS: [&str; 3] = ["base_color", "diffuse_reflectance", "reflectance"];
+        let color =
+            COLORS.into_iter().find_map(|name| Some((name, self.color_if_given(props, name, Role::Factor)?)));
+        props.use_all();
+        let (consequence, reflectance) = match color {
+            Some((name, color)) => {
+                (format!("a two-sided diffuse surface of its {name} is shown instead"), color)
+            }
+            None => (
+                "a two-sided diffuse surface of reflectance 0.5 is shown instead".to_owned(),
+                ColorInput::Constant(GREY),
+            ),
+        };
+        self.unknown_plugin(node, KNOWN, &consequence);
+        let side = self.add_material(MaterialDesc::Diffuse { reflectance }, node);
+        Lowered::New(MaterialDesc::TwoSided { front: side, back: side })
+    }
+
+    fn distribution(&mut self, props: &mut Props<'a>) -> MicrofacetKind {
+        match props.string("distribution", self.d) {
+            None | Some(("beckmann", _)) => MicrofacetKind::Beckmann,
+            Some(("ggx", _)) => MicrofacetKind::Ggx,
+            Some((other, span)) => {
+                self.unknown_word("microfacet distribution", other, &["beckmann", "ggx"], "beckmann", span);
+                MicrofacetKind::Beckmann
+            }
+        }
+    }
+
+    /// `alpha`, or `alpha_u` and `alpha_v`.
+    fn alpha(&mut self, props: &mut Props<'a>) -> [ScalarInput; 2] {
+        if props.has("alpha_u") || props.has("alpha_v") {
+            return [self.scalar(props, "alpha_u", 0.1), self.scalar(props, "alpha_v", 0.1)];
+        }
+        [self.scalar(props, "alpha", 0.1); 2]
+    }
+
+    fn constant_alpha(&mut self, props: &mut Props<'a>) -> f32 {
+        match self.scalar(props, "alpha", 0.1) {
+            ScalarInput::Constant(alpha) => alpha,
+            ScalarInput::Texture(_) => {
+                let message = format!("\"alpha\" of {} cannot be a texture", props.node.title());
+                self.d.push(
+                    Diagnostic::warning("mitsuba::texture-not-possible", &props.node.span, message)
+                        .consequence("the default, 0.1, is used"),
+                );
+                0.1
+            }
+        }
+    }
+
+    /// Interior over exterior index of refraction.
+    fn eta(&mut self, props: &mut Props<'a>, interior: &str) -> f32 {
+        let default = tables::ior(interior).unwrap_or(1.5);
+        let interior = self.ior(props, "int_ior").unwrap_or(default);
+        let exterior = self.ior(props, "ext_ior").unwrap_or(1.000277);
+        (interior / exterior) as f32
+    }
+
+    /// A number or a name.
+    fn ior(&mut self, props: &mut Props<'a>, name: &'static str) -> Option<f64> {
+        let property = props.get(name)?;
+        let Value::String(text) = &property.value else {
+            return props.float(name, self.d).map(f64::from);
+        };
+        let known = tables::ior(text);
+        if known.is_none() {
+            let message = format!("no index of refraction is known for \"{}\"", crate::values::shown(text));
+            self.d.push(
+                Diagnostic::error("mitsuba::unknown-value", &property.span, message)
+                    .guess(text, tables::IORS.iter().map(|(n, _)| *n)),
+            );
+        }
+        known
+    }
+
+    /// A metal by name, or `eta` and `k`; `None` is a perfect mirror, which is also the default.
+    fn eta_k(&mut self, props: &mut Props<'a>) -> Option<(ColorInput, ColorInput)> {
+        let exterior =
+            self.ior(props, "ext_eta").or_else(|| self.ior(props, "ext_ior")).unwrap_or(1.0) as f32;
+        let material = props.string("material", self.d);
+        if props.has("eta") || props.has("k") {
+            let eta = self.factor(props, "eta", Rgb::ZERO);
+            let k = self.factor(props, "k", Rgb::ONE);
+            return Some((self.relative(eta, exterior, props), self.relative(k, exterior, props)));
+        }
+        let (name, span) = material?;
+        if name.eq_ignore_ascii_case("none") {
+            return None;
+        }
+        let Some((_, eta, k)) = tables::metal(name) else {
+            let message = format!("the metal \"{}\" is not known", crate::values::shown(name));
+            self.d.push(
+                Diagnostic::error("mitsuba::unknown-value", span, message)
+                    .guess(name, tables::METALS.iter().map(|(n, ..)| *n)),
+            );
+            return None;
+        };
+        let relative = |v: [f32; 3]| ColorInput::Constant(Rgb::from(v) / exterior);
+        Some((relative(*eta), relative(*k)))
+    }
+
+    fn relative(&mut self, input: ColorInput, exterior: f32, props: &Props<'a>) -> ColorInput {
+        match input {
+            ColorInput::Constant(color) => ColorInput::Constant(color / exterior),
+            texture if exterior == 1.0 => texture,
+            texture => {
+                self.d.push(
+                    Diagnostic::warning(
+                        "mitsuba::unsupported-property",
+                        &props.node.span,
+                        "a textured index with an exterior",
+                    )
+                    .consequence("the exterior is taken as vacuum"),
+                );
+                texture
+            }
+        }
+    }
+}
+
+/// A new description, or a material that is there already.
+enum Lowered {
+    New(MaterialDesc),
+    Same(MaterialId),
+}
+
+fn diffuse(color: Rgb) -> MaterialDesc {
+    MaterialDesc::Diffuse { reflectance: ColorInput::Constant(color) }
+}

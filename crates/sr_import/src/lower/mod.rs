@@ -1,0 +1,258 @@
+//! A tree of [`Node`]s to a [`SceneDesc`].
+//!
+//! In: what a front end has read. Out: the description, if nothing was an error. Here names get their meaning;
+//! everything that a file asks for and that is not done becomes a diagnostic.
+
+mod color;
+mod emitter;
+mod jobs;
+mod material;
+mod sensor;
+mod settings;
+mod shape;
+mod texture;
+
+use std::collections::{HashMap, HashSet};
+use std::path::PathBuf;
+
+use sr_scene::{
+    CameraDesc, Diagnostic, Diagnostics, GroupDesc, InstanceDesc, LightDesc, MaterialDesc, MaterialId,
+    SceneDesc, Settings, ShapeDesc, Span, TextureDesc,
+};
+
+use crate::node::{Child, Node};
+use crate::props::Props;
+use crate::values::shown;
+use jobs::{ImageSlot, PendingMesh};
+
+/// What a tree needs to be understood.
+#[derive(Clone, Debug, Default)]
+pub struct Origin {
+    /// Was it written for Mitsuba 0.5 or 0.6? Then a uniform spectrum on an emitter is white.
+    pub legacy: bool,
+    /// Where files are looked for, in this order.
+    pub directories: Vec<PathBuf>,
+}
+
+/// Lowers a `<scene>` and validates it.
+pub fn lower(root: &Node, origin: &Origin, d: &mut Diagnostics) -> Option<SceneDesc> {
+    let mut lowering = Lowering::new(origin, d);
+    lowering.collect_ids(root);
+    lowering.scene(root);
+    lowering.finish(root)
+}
+
+/// The description as it grows.
+struct Lowering<'a, 'd> {
+    origin: &'a Origin,
+    d: &'d mut Diagnostics,
+    ids: HashMap<&'a str, &'a Node>,
+    camera: Option<CameraDesc>,
+    settings: Settings,
+    images: Vec<ImageSlot>,
+    textures: Vec<TextureDesc>,
+    materials: Vec<MaterialDesc>,
+    material_spans: Vec<Span>,
+    shapes: Vec<ShapeDesc>,
+    groups: Vec<GroupDesc>,
+    instances: Vec<InstanceDesc>,
+    lights: Vec<LightDesc>,
+    meshes: Vec<PendingMesh>,
+    /// Objects that were lowered already, by the address of their node.
+    materials_done: HashMap<usize, MaterialId>,
+    textures_done: HashMap<usize, sr_scene::ColorInput>,
+    groups_done: HashMap<usize, u32>,
+    /// Objects being lowered: meeting one again is a cycle.
+    open: HashSet<usize>,
+}
+
+/// Identifies a node for as long as the tree lives.
+fn key(node: &Node) -> usize {
+    std::ptr::from_ref(node).addr()
+}
+
+impl<'a, 'd> Lowering<'a, 'd> {
+    fn new(origin: &'a Origin, d: &'d mut Diagnostics) -> Self {
+        Self {
+            origin,
+            d,
+            ids: HashMap::new(),
+            camera: None,
+            settings: Settings::default(),
+            images: Vec::new(),
+            textures: Vec::new(),
+            materials: Vec::new(),
+            material_spans: Vec::new(),
+            shapes: Vec::new(),
+            groups: Vec::new(),
+            instances: Vec::new(),
+            lights: Vec::new(),
+            meshes: Vec::new(),
+            materials_done: HashMap::new(),
+            textures_done: HashMap::new(),
+            groups_done: HashMap::new(),
+            open: HashSet::new(),
+        }
+    }
+
+    fn collect_ids(&mut self, node: &'a Node) {
+        for child in &node.children {
+            let Child::Node(child) = child else { continue };
+            if let Some(id) = child.id.as_deref()
+                && let Some(first) = self.ids.get(id)
+            {
+                let message = format!(
+                    "the id \"{}\" is given to {} and to {}",
+                    shown(id),
+                    first.title(),
+                    child.title()
+                );
+                self.d.push(
+                    Diagnostic::warning("mitsuba::duplicate-id", &child.span, message)
+                        .consequence("references to it mean the first one"),
+                );
+            } else if let Some(id) = child.id.as_deref() {
+                self.ids.insert(id, child);
+            }
+            self.collect_ids(child);
+        }
+    }
+
+    /// The node a child is or refers to.
+    fn resolve(&mut self, child: &'a Child) -> Option<&'a Node> {
+        let reference = match child {
+            Child::Node(node) => return Some(node),
+            Child::Reference(reference) => reference,
+        };
+        let found = self.ids.get(reference.id.as_str()).copied();
+        if found.is_none() {
+            let message = format!("there is no object with the id \"{}\"", shown(&reference.id));
+            self.d.push(
+                Diagnostic::error("mitsuba::unresolved-reference", &reference.span, message)
+                    .guess(&reference.id, self.ids.keys().copied()),
+            );
+        }
+        found
+    }
+
+    /// The nested objects of a class, named or not; references that lead nowhere are reported.
+    fn nested(&mut self, props: &mut Props<'a>, class: &str) -> Vec<&'a Node> {
+        let taken = props.take_children(|child| match child {
+            Child::Node(node) => node.class == class,
+            Child::Reference(r) => self.ids.get(r.id.as_str()).is_none_or(|n| n.class == class),
+        });
+        taken.into_iter().filter_map(|child| self.resolve(child)).collect()
+    }
+
+    fn scene(&mut self, root: &'a Node) {
+        let mut props = Props::new(root);
+        let mut sensors = Vec::new();
+        let mut integrators = Vec::new();
+        for child in props.take_children(|_| true) {
+            let node = match child {
+                Child::Node(node) => node,
+                Child::Reference(reference) => {
+                    self.d.push(
+                        Diagnostic::warning(
+                            "mitsuba::unused-child",
+                            &reference.span,
+                            "a reference that is part of nothing",
+                        )
+                        .consequence("it is ignored"),
+                    );
+                    continue;
+                }
+            };
+            match node.class.as_str() {
+                "bsdf" => {
+                    self.material(node);
+                }
+                // Used where they are referred to.
+                "texture" | "spectrum" | "medium" | "phase" | "volume" | "film" | "sampler" | "rfilter" => {}
+                "shape" => self.top_level_shape(node),
+                "emitter" => self.emitter(node),
+                "sensor" => sensors.push(node),
+                "integrator" => integrators.push(node),
+                _ => {
+                    let message = format!("{} has no meaning here", node.title());
+                    self.d.push(
+                        Diagnostic::warning("mitsuba::unused-child", &node.span, message)
+                            .consequence("it is ignored"),
+                    );
+                }
+            }
+        }
+        props.finish(self.d);
+        self.integrators(&integrators);
+        self.sensors(&sensors);
+        self.report_media(root);
+    }
+
+    /// Media that are described at the top: said once, whoever refers to them.
+    fn report_media(&mut self, root: &Node) {
+        for child in &root.children {
+            if let Child::Node(node) = child
+                && node.class == "medium"
+            {
+                self.warn_medium(node);
+            }
+        }
+    }
+
+    fn warn_medium(&mut self, node: &Node) {
+        self.d.push(
+            Diagnostic::warning(
+                "mitsuba::unsupported-medium",
+                &node.span,
+                format!("{} is not supported", node.title()),
+            )
+            .consequence("its inside is rendered as empty space"),
+        );
+    }
+
+    fn finish(mut self, root: &Node) -> Option<SceneDesc> {
+        self.load_meshes();
+        let images = self.load_images();
+        let camera = match self.camera.take() {
+            Some(camera) => camera,
+            None => {
+                self.d.push(
+                    Diagnostic::warning("mitsuba::no-sensor", &root.span, "the scene has no sensor")
+                        .consequence("a camera that sees the whole scene along -Z is used"),
+                );
+                self.default_camera(&root.span)
+            }
+        };
+        let scene = SceneDesc {
+            camera,
+            settings: self.settings,
+            images,
+            textures: self.textures,
+            materials: self.materials,
+            shapes: self.shapes,
+            groups: self.groups,
+            instances: self.instances,
+            lights: self.lights,
+        };
+        if self.d.has_errors() {
+            return None;
+        }
+        let spans = self.material_spans;
+        let found = sr_scene::validate(&scene, |id| spans.get(id.0 as usize).cloned().unwrap_or_default());
+        self.d.list.extend(found);
+        (!self.d.has_errors()).then_some(scene)
+    }
+
+    /// Reports a plugin that does not exist or is not supported.
+    fn unknown_plugin(&mut self, node: &Node, known: &[&str], consequence: &str) {
+        self.d.push(
+            Diagnostic::warning(
+                "mitsuba::unsupported-plugin",
+                &node.span,
+                format!("{} is not supported", node.title()),
+            )
+            .guess(&node.kind, known.iter().copied())
+            .consequence(consequence),
+        );
+    }
+}

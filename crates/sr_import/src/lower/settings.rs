@@ -1,0 +1,117 @@
+//! Integrators and samplers: what the file asks the renderer for.
+
+use sr_scene::{Diagnostic, Settings};
+
+use super::Lowering;
+use crate::node::Node;
+use crate::props::Props;
+
+const KNOWN: &[&str] = &["path", "direct"];
+
+impl<'a> Lowering<'a, '_> {
+    pub(super) fn integrators(&mut self, nodes: &[&'a Node]) {
+        let Some((&first, more)) = nodes.split_first() else { return };
+        if let Some(second) = more.first() {
+            self.d.push(
+                Diagnostic::warning(
+                    "mitsuba::several-integrators",
+                    &second.span,
+                    "the scene has more than one integrator",
+                )
+                .consequence("the first one is used"),
+            );
+        }
+        self.integrator(first);
+    }
+
+    fn integrator(&mut self, node: &'a Node) {
+        let mut props = Props::new(node);
+        self.settings.span = node.span.clone();
+        if let Some(hide) = props.boolean("hide_emitters", self.d) {
+            self.settings.hide_emitters = hide;
+        }
+        match node.kind.as_str() {
+            "direct" => {
+                self.settings.max_depth = Some(2);
+                // How direct light is sampled changes the noise only.
+                props.ignore(&["emitter_samples", "bsdf_samples", "shading_samples", "strict_normals"]);
+            }
+            // These wrap another integrator and add outputs.
+            "moment" | "aov" if !self.nested_kinds(node).is_empty() => {
+                let nested = self.nested(&mut props, "integrator");
+                props.use_all();
+                let used = nested.first().map(|n| n.title()).unwrap_or_default();
+                self.unknown_plugin(
+                    node,
+                    KNOWN,
+                    &format!("its nested {used} is used, without further outputs"),
+                );
+                if let Some(inner) = nested.first() {
+                    self.integrator(inner);
+                }
+            }
+            kind => {
+                if kind != "path" {
+                    self.unknown_plugin(node, KNOWN, "the integrator \"path\" is used");
+                    props.get("max_depth");
+                }
+                self.depths(&mut props, node);
+                props.ignore(&["strict_normals", "samples_per_pass", "block_size", "timeout"]);
+                if kind != "path" {
+                    props.use_all();
+                }
+            }
+        }
+        props.finish(self.d);
+    }
+
+    fn nested_kinds(&self, node: &'a Node) -> Vec<&'a str> {
+        let nested = node.children.iter().filter_map(|child| match child {
+            crate::node::Child::Node(inner) if inner.class == "integrator" => Some(inner.kind.as_str()),
+            _ => None,
+        });
+        nested.collect()
+    }
+
+    fn depths(&mut self, props: &mut Props<'a>, node: &Node) {
+        let Settings { roulette_depth, .. } = Settings::default();
+        let max_depth = props.integer("max_depth", self.d).unwrap_or(-1);
+        let rr_depth = props.integer("rr_depth", self.d);
+        self.settings.max_depth = match max_depth {
+            -1 => None,
+            depth => match u32::try_from(depth) {
+                Ok(depth) => Some(depth),
+                Err(_) => {
+                    let message = format!("a maximum depth of {depth}: -1 (unbounded) or more is possible");
+                    self.d.push(Diagnostic::error("mitsuba::bad-value", &node.span, message));
+                    None
+                }
+            },
+        };
+        self.settings.roulette_depth = match rr_depth.map(u32::try_from) {
+            None => roulette_depth,
+            Some(Ok(depth)) => Some(depth),
+            Some(Err(_)) => {
+                let message = "the depth of Russian roulette cannot be negative";
+                self.d.push(Diagnostic::error("mitsuba::bad-value", &node.span, message));
+                roulette_depth
+            }
+        };
+    }
+
+    /// A sensor's sampler: only how many samples it takes matters here.
+    pub(super) fn sampler(&mut self, node: &'a Node) {
+        let mut props = Props::new(node);
+        if let Some(count) = props.integer("sample_count", self.d) {
+            match u32::try_from(count) {
+                Ok(spp) if spp > 0 => self.settings.spp = spp,
+                _ => {
+                    let message = format!("a sample count of {count}: at least 1 is needed");
+                    self.d.push(Diagnostic::error("mitsuba::bad-value", &node.span, message));
+                }
+            }
+        }
+        props.ignore(&["seed", "dimension", "jitter", "scramble", "strength"]);
+        props.finish(self.d);
+    }
+}

@@ -1,0 +1,158 @@
+//! Wavefront OBJ: polygons of positions, texture coordinates and normals. Materials and groups are not read.
+
+use std::collections::HashMap;
+
+use glam::{Vec2, Vec3};
+use sr_scene::MeshDesc;
+
+use super::{MAX_ELEMENTS, fan};
+use crate::values::shown;
+
+/// Indices of a corner into the file's lists, from 0.
+type Corner = (u32, Option<u32>, Option<u32>);
+
+/// Parses a file. Corners that share all indices share a vertex, as in Mitsuba.
+pub fn parse(bytes: &[u8]) -> Result<MeshDesc, String> {
+    let mut reader = Reader::default();
+    for (number, line) in bytes.split(|&b| b == b'\n').enumerate() {
+        // Comments and names may be in any encoding; what is read is ASCII.
+        let line = String::from_utf8_lossy(line);
+        let line = line.split('#').next().unwrap_or("");
+        reader.line(line).map_err(|reason| format!("line {}: {reason}", number + 1))?;
+    }
+    Ok(reader.finish())
+}
+
+#[derive(Default)]
+struct Reader {
+    positions: Vec<Vec3>,
+    normals: Vec<Vec3>,
+    uvs: Vec<Vec2>,
+    vertices: HashMap<Corner, u32>,
+    corners: Vec<Corner>,
+    triangles: Vec<[u32; 3]>,
+    polygon: Vec<u32>,
+}
+
+impl Reader {
+    fn line(&mut self, line: &str) -> Result<(), String> {
+        let mut words = line.split_ascii_whitespace();
+        match words.next() {
+            Some("v") => self.positions.push(Vec3::from(floats(&mut words)?)),
+            Some("vn") => self.normals.push(Vec3::from(floats(&mut words)?)),
+            Some("vt") => {
+                let u = words.next().ok_or("too few numbers")?;
+                // A missing v is 0 by the format's definition.
+                self.uvs.push(Vec2::new(float(u)?, words.next().map_or(Ok(0.0), float)?));
+            }
+            Some("f") => self.face(words)?,
+            _ => {}
+        }
+        if self.positions.len().max(self.normals.len()).max(self.uvs.len()).max(self.triangles.len())
+            > MAX_ELEMENTS
+        {
+            return Err(format!("more than {MAX_ELEMENTS} elements"));
+        }
+        Ok(())
+    }
+
+    fn face<'a>(&mut self, words: impl Iterator<Item = &'a str>) -> Result<(), String> {
+        self.polygon.clear();
+        for word in words {
+            let mut parts = word.split('/');
+            let position = index(parts.next().unwrap_or(""), self.positions.len(), "vertex")?
+                .ok_or_else(|| format!("\"{}\" is not a corner", shown(word)))?;
+            let uv = index(parts.next().unwrap_or(""), self.uvs.len(), "texture coordinate")?;
+            let normal = index(parts.next().unwrap_or(""), self.normals.len(), "normal")?;
+            let corner = (position, uv, normal);
+            let next = self.corners.len() as u32;
+            let vertex = *self.vertices.entry(corner).or_insert(next);
+            if vertex == next {
+                self.corners.push(corner);
+            }
+            self.polygon.push(vertex);
+        }
+        if self.polygon.len() < 3 {
+            return Err(format!("a face needs three corners, not {}", self.polygon.len()));
+        }
+        fan(&self.polygon, &mut self.triangles);
+        Ok(())
+    }
+
+    fn finish(self) -> MeshDesc {
+        let Self { positions, normals, uvs, corners, triangles, .. } = self;
+        let positions = corners.iter().map(|c| positions[c.0 as usize]).collect();
+        // Corners without a coordinate get 0; corners without a normal get one from their faces later.
+        let uvs = if corners.iter().any(|c| c.1.is_some()) {
+            corners.iter().map(|c| c.1.map_or(Vec2::ZERO, |i| uvs[i as usize])).collect()
+        } else {
+            Vec::new()
+        };
+        let normals = if corners.iter().any(|c| c.2.is_some()) {
+            corners.iter().map(|c| c.2.map_or(Vec3::ZERO, |i| normals[i as usize])).collect()
+        } else {
+            Vec::new()
+        };
+        MeshDesc { name: String::new(), positions, normals, uvs, triangles }
+    }
+}
+
+fn float(word: &str) -> Result<f32, String> {
+    word.parse().map_err(|_| format!("\"{}\" is not a number", shown(word)))
+}
+
+fn floats<'a>(words: &mut impl Iterator<Item = &'a str>) -> Result<[f32; 3], String> {
+    let mut next = || float(words.next().ok_or("too few numbers")?);
+    Ok([next()?, next()?, next()?])
+}
+
+/// A one-based index, or a negative one that counts from the end; `None` for an empty text.
+fn index(text: &str, len: usize, what: &str) -> Result<Option<u32>, String> {
+    if text.is_empty() {
+        return Ok(None);
+    }
+    let given: i64 = text.parse().map_err(|_| format!("\"{}\" is not an index", shown(text)))?;
+    let zero_based = if given < 0 { given.checked_add(len as i64) } else { given.checked_sub(1) };
+    match zero_based {
+        Some(i) if i >= 0 && i < len as i64 => Ok(Some(i as u32)),
+        _ => Err(format!("{what} {given} does not exist: there are {len} so far")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn polygons_negative_indices_and_shared_positions() {
+        let text =
+            "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 1\nf 1/1 2/1 3/1 4/1\nf -4/2 -3/1 -2/1\n";
+        let mesh = parse(text.as_bytes()).unwrap();
+        assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3], [4, 1, 2]]);
+        assert_eq!(mesh.positions[4], mesh.positions[0]);
+        assert_eq!(mesh.uvs[4], Vec2::ONE);
+        assert!(mesh.normals.is_empty());
+    }
+
+    #[test]
+    fn normals_without_texture_coordinates() {
+        let mesh = parse(b"v 0 0 0\nv 1 0 0\nv 1 1 0\nvn 0 0 1\nf 1//1 2//1 3//1").unwrap();
+        assert_eq!(mesh.normals, [Vec3::Z; 3]);
+        assert!(mesh.uvs.is_empty());
+    }
+
+    #[test]
+    fn errors_name_the_line() {
+        for (text, part) in [
+            ("v 0 0 0\nf 1 2 3\n", "line 2: vertex 2 does not exist"),
+            ("v 0 x 0\n", "line 1: \"x\" is not a number"),
+            ("v 0 0\n", "too few"),
+            ("v 0 0 0\nf 1 1\n", "three corners"),
+            ("v 0 0 0\nf 0 1 1\n", "vertex 0"),
+            ("v 0 0 0\nf -9223372036854775808 1 1\n", "does not exist"),
+        ] {
+            let error = parse(text.as_bytes()).unwrap_err();
+            assert!(error.contains(part), "{error}");
+        }
+    }
+}

@@ -1,0 +1,185 @@
+//! A mesh as it was read to a mesh in world space: transform, normals, orientation, checks.
+
+use glam::{DMat3, DMat4, Vec3};
+use sr_scene::MeshDesc;
+
+use super::normals;
+
+/// What a scene file asks of a mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Placement {
+    /// To world space (or the group's).
+    pub to_world: DMat4,
+    /// Flat shading: vertex normals are dropped, and none are made.
+    pub face_normals: bool,
+    /// The other side is the front.
+    pub flip_normals: bool,
+    /// Edges sharper than this, in radians, stay sharp; all vertex normals are made anew.
+    pub max_smooth_angle: Option<f32>,
+    /// The mesh is flat by construction: its normals only tell the front.
+    pub flat: bool,
+}
+
+/// What was noticed on the way.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Report {
+    /// Triangles without area; they were dropped.
+    pub degenerate: usize,
+    /// Vertex normals that were not finite or zero; they were made from the triangles.
+    pub bad_normals: usize,
+}
+
+/// Places a mesh; the error is half a sentence.
+///
+/// Orientation follows Mitsuba: the front is where vertex normals point (transformed by the inverse
+/// transpose), and without them where the *transformed* corners turn counter-clockwise, so that a mirroring
+/// transform swaps the sides of a mesh without normals.
+pub fn place(mesh: &MeshDesc, placement: &Placement) -> Result<(MeshDesc, Report), String> {
+    check(mesh)?;
+    let Placement { to_world, .. } = *placement;
+    let linear = DMat3::from_mat4(to_world);
+    let positions: Vec<Vec3> =
+        mesh.positions.iter().map(|p| to_world.transform_point3(p.as_dvec3()).as_vec3()).collect();
+    if let Some(vertex) = positions.iter().position(|p| !p.is_finite()) {
+        return Err(format!("vertex {vertex} is out of range after its transform"));
+    }
+    let mut report = Report::default();
+    let mut out =
+        MeshDesc { name: mesh.name.clone(), positions, uvs: mesh.uvs.clone(), ..MeshDesc::default() };
+    let keeps_normals =
+        !mesh.normals.is_empty() && !placement.face_normals && placement.max_smooth_angle.is_none();
+    let mirrored = keeps_normals && linear.determinant() < 0.0;
+    out.triangles = mesh
+        .triangles
+        .iter()
+        .map(|&[a, b, c]| if mirrored { [a, c, b] } else { [a, b, c] })
+        .filter(|t| has_area(t.map(|i| out.positions[i as usize])))
+        .collect();
+    report.degenerate = mesh.triangles.len() - out.triangles.len();
+    if placement.face_normals || placement.flat {
+        // Flat shading needs no normals.
+    } else if let Some(angle) = placement.max_smooth_angle {
+        normals::crease(&mut out, angle);
+    } else if mesh.normals.is_empty() {
+        out.normals = normals::smooth(&out.positions, &out.triangles);
+    } else {
+        // The cofactor matrix is the inverse transpose up to the determinant, whose sign is put back.
+        let cofactor = cofactor(linear) * linear.determinant().signum();
+        out.normals =
+            mesh.normals.iter().map(|n| (cofactor * n.as_dvec3()).normalize_or_zero().as_vec3()).collect();
+        repair(&mut out, &mut report);
+    }
+    // Vertices that no triangle uses have no normal; any unit vector keeps the arrays well-formed.
+    out.normals.iter_mut().filter(|n| **n == Vec3::ZERO).for_each(|n| *n = Vec3::Z);
+    if placement.flip_normals {
+        out.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+        out.normals.iter_mut().for_each(|n| *n = -*n);
+    }
+    Ok((out, report))
+}
+
+fn check(mesh: &MeshDesc) -> Result<(), String> {
+    let n = mesh.positions.len();
+    for (len, what) in [(mesh.normals.len(), "normals"), (mesh.uvs.len(), "texture coordinates")] {
+        if len != 0 && len != n {
+            return Err(format!("it has {len} {what} for {n} vertices"));
+        }
+    }
+    if let Some(vertex) = mesh.positions.iter().position(|p| !p.is_finite()) {
+        return Err(format!("vertex {vertex} is {}, which is not finite", mesh.positions[vertex]));
+    }
+    if let Some(vertex) = mesh.uvs.iter().position(|uv| !uv.is_finite()) {
+        return Err(format!("the texture coordinates of vertex {vertex} are not finite"));
+    }
+    if let Some(at) = mesh.triangles.iter().position(|t| t.iter().any(|&i| i as usize >= n)) {
+        return Err(format!(
+            "triangle {at} uses the vertices {:?}, but there are only {n}",
+            mesh.triangles[at]
+        ));
+    }
+    Ok(())
+}
+
+fn has_area([a, b, c]: [Vec3; 3]) -> bool {
+    let [a, b, c] = [a, b, c].map(|p| p.as_dvec3());
+    (b - a).cross(c - a).length_squared() > 0.0
+}
+
+/// Replaces normals that have no direction, and those that their vertex's triangles do not use are left.
+fn repair(mesh: &mut MeshDesc, report: &mut Report) {
+    let broken = |n: &Vec3| !n.is_finite() || *n == Vec3::ZERO;
+    if !mesh.normals.iter().any(broken) {
+        return;
+    }
+    let smooth = normals::smooth(&mesh.positions, &mesh.triangles);
+    for (normal, smooth) in mesh.normals.iter_mut().zip(smooth).filter(|(n, _)| broken(n)) {
+        *normal = smooth;
+        report.bad_normals += usize::from(smooth != Vec3::ZERO);
+    }
+}
+
+fn cofactor(m: DMat3) -> DMat3 {
+    DMat3::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis))
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::mesh::primitives;
+
+    fn placement(to_world: DMat4) -> Placement {
+        Placement { to_world, face_normals: false, flip_normals: false, max_smooth_angle: None, flat: false }
+    }
+
+    fn geometric(mesh: &MeshDesc, t: usize) -> Vec3 {
+        let [a, b, c] = mesh.triangles[t].map(|i| mesh.positions[i as usize]);
+        (b - a).cross(c - a).normalize()
+    }
+
+    #[test]
+    fn a_mirrored_mesh_keeps_the_front_that_its_normals_tell() {
+        let mirror = DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0));
+        let (cube, _) = place(&primitives::cube(), &placement(mirror)).unwrap();
+        for t in 0..12 {
+            assert!(geometric(&cube, t).dot(cube.positions[cube.triangles[t][0] as usize]) > 0.0);
+        }
+        // Without normals Mitsuba's front turns with the corners.
+        let (square, _) =
+            place(&primitives::rectangle(), &Placement { flat: true, ..placement(mirror) }).unwrap();
+        assert_eq!(geometric(&square, 0), Vec3::NEG_Z);
+        assert!(square.normals.is_empty());
+    }
+
+    #[test]
+    fn normals_stay_perpendicular_under_shear_and_scale() {
+        let shear =
+            DMat4::from_cols_array(&[1., 0., 0., 0., 2., 3., 0., 0., 0., 0., -0.5, 0., 0., 0., 0., 1.]);
+        let (cube, report) = place(&primitives::cube(), &placement(shear)).unwrap();
+        assert_eq!(report, Report::default());
+        for (t, corners) in cube.triangles.iter().enumerate() {
+            assert!((geometric(&cube, t) - cube.normals[corners[0] as usize]).length() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn flipping_turns_corners_and_normals() {
+        let flip = Placement { flip_normals: true, ..placement(DMat4::IDENTITY) };
+        let (cube, _) = place(&primitives::cube(), &flip).unwrap();
+        assert_eq!(geometric(&cube, 0), Vec3::Y);
+        assert_eq!(cube.normals[0], Vec3::Y);
+    }
+
+    #[test]
+    fn bad_meshes() {
+        let mut mesh = primitives::rectangle();
+        mesh.triangles.push([0, 0, 1]);
+        assert_eq!(place(&mesh, &placement(DMat4::IDENTITY)).unwrap().1.degenerate, 1);
+        mesh.triangles.push([0, 1, 4]);
+        assert!(place(&mesh, &placement(DMat4::IDENTITY)).unwrap_err().contains("triangle 3"));
+        mesh.triangles.pop();
+        mesh.positions[2].y = f32::NAN;
+        assert!(place(&mesh, &placement(DMat4::IDENTITY)).unwrap_err().contains("vertex 2"));
+    }
+}

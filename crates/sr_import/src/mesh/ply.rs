@@ -1,0 +1,238 @@
+//! Stanford PLY, text and binary of both byte orders.
+
+use std::io::{BufRead, Cursor};
+
+use glam::{Vec2, Vec3};
+use ply_rs_bw::parser::{Parser, Reader};
+use ply_rs_bw::ply::{ElementDef, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType};
+use sr_scene::MeshDesc;
+
+use super::{MAX_ELEMENTS, fan};
+
+/// Parses a file.
+pub fn parse(bytes: &[u8]) -> Result<MeshDesc, String> {
+    let mut reader = Reader::new(Cursor::new(bytes));
+    let header = Parser::<Ignored>::new().read_header(&mut reader).map_err(|e| one_line(&e))?;
+    let mut mesh = MeshDesc::default();
+    for (name, element) in &header.elements {
+        // An element takes at least a byte: a count beyond the file's size is a lie that would cost time and memory.
+        if element.count > bytes.len().min(MAX_ELEMENTS) {
+            return Err(format!("{} elements \"{name}\" do not fit into the file", element.count));
+        }
+        match name.as_str() {
+            "vertex" => vertices(&mut reader, element, &header, &mut mesh)?,
+            "face" => faces(&mut reader, element, &header, &mut mesh)?,
+            _ => {
+                read::<Ignored>(&mut reader, element, &header)?;
+            }
+        }
+    }
+    if !header.elements.contains_key("vertex") {
+        return Err("it has no vertices".into());
+    }
+    Ok(mesh)
+}
+
+fn read<E: PropertyAccess>(
+    reader: &mut Reader<impl BufRead>,
+    element: &ElementDef,
+    header: &Header,
+) -> Result<Vec<E>, String> {
+    Parser::<E>::new().read_payload_for_element(reader, element, header).map_err(|e| one_line(&e))
+}
+
+fn vertices(
+    reader: &mut Reader<impl BufRead>,
+    element: &ElementDef,
+    header: &Header,
+    mesh: &mut MeshDesc,
+) -> Result<(), String> {
+    let has = |name: &str| element.properties.contains_key(name);
+    if !(has("x") && has("y") && has("z")) {
+        return Err("its vertices have no x, y, z".into());
+    }
+    let vertices: Vec<Vertex> = read(reader, element, header)?;
+    mesh.positions = vertices.iter().map(|v| v.position).collect();
+    if has("nx") && has("ny") && has("nz") {
+        mesh.normals = vertices.iter().map(|v| v.normal).collect();
+    }
+    let pairs = [("u", "v"), ("s", "t"), ("texture_u", "texture_v"), ("texture_s", "texture_t")];
+    if pairs.iter().any(|(u, v)| has(u) && has(v)) {
+        mesh.uvs = vertices.iter().map(|v| v.uv).collect();
+    }
+    Ok(())
+}
+
+fn faces(
+    reader: &mut Reader<impl BufRead>,
+    element: &ElementDef,
+    header: &Header,
+    mesh: &mut MeshDesc,
+) -> Result<(), String> {
+    let list = ["vertex_indices", "vertex_index"].iter().find_map(|name| element.properties.get(*name));
+    if element.count > 0 && !list.is_some_and(|p| matches!(p.data_type, PropertyType::List(..))) {
+        return Err("its faces have no list of vertex indices".into());
+    }
+    mesh.triangles.reserve(element.count);
+    for (number, face) in read::<Face>(reader, element, header)?.into_iter().enumerate() {
+        if let Some(bad) = face.bad {
+            return Err(format!("face {number} uses the vertex {bad}"));
+        }
+        fan(&face.indices, &mut mesh.triangles);
+    }
+    Ok(())
+}
+
+/// The parser's errors quote whole lines; the first line of the message says enough.
+fn one_line(error: &dyn std::fmt::Display) -> String {
+    crate::values::shown(error.to_string().lines().next().unwrap_or("it cannot be read")).replace('\t', " ")
+}
+
+#[derive(Default)]
+struct Vertex {
+    position: Vec3,
+    normal: Vec3,
+    uv: Vec2,
+}
+
+impl PropertyAccess for Vertex {
+    fn new() -> Self {
+        Self::default()
+    }
+
+    fn set_float(&mut self, name: &str, value: f32) -> PropertyAccessResult {
+        let slot = match name {
+            "x" => &mut self.position.x,
+            "y" => &mut self.position.y,
+            "z" => &mut self.position.z,
+            "nx" => &mut self.normal.x,
+            "ny" => &mut self.normal.y,
+            "nz" => &mut self.normal.z,
+            "u" | "s" | "texture_u" | "texture_s" => &mut self.uv.x,
+            "v" | "t" | "texture_v" | "texture_t" => &mut self.uv.y,
+            _ => return PropertyAccessResult::Ignored,
+        };
+        *slot = value;
+        PropertyAccessResult::Set
+    }
+
+    fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
+        match value {
+            Property::Double(v) => self.set_float(name, v as f32),
+            Property::Char(v) => self.set_float(name, v.into()),
+            Property::UChar(v) => self.set_float(name, v.into()),
+            Property::Short(v) => self.set_float(name, v.into()),
+            Property::UShort(v) => self.set_float(name, v.into()),
+            Property::Int(v) => self.set_float(name, v as f32),
+            Property::UInt(v) => self.set_float(name, v as f32),
+            _ => PropertyAccessResult::Ignored,
+        }
+    }
+}
+
+#[derive(Default)]
+struct Face {
+    indices: Vec<u32>,
+    bad: Option<i64>,
+}
+
+impl Face {
+    fn set<T: Into<i64>>(&mut self, list: Vec<T>) {
+        self.indices.reserve_exact(list.len());
+        for value in list {
+            let value = value.into();
+            match u32::try_from(value) {
+                Ok(index) => self.indices.push(index),
+                Err(_) => self.bad = Some(value),
+            }
+        }
+    }
+}
+
+impl PropertyAccess for Face {
+    fn new() -> Self {
+        Self::default()
+    }
+
+    fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
+        if name != "vertex_indices" && name != "vertex_index" {
+            return PropertyAccessResult::Ignored;
+        }
+        match value {
+            Property::ListInt(v) => self.set(v),
+            Property::ListUInt(v) => self.set(v),
+            Property::ListShort(v) => self.set(v),
+            Property::ListUShort(v) => self.set(v),
+            Property::ListChar(v) => self.set(v),
+            Property::ListUChar(v) => self.set(v),
+            _ => return PropertyAccessResult::UnsupportedType,
+        }
+        PropertyAccessResult::Set
+    }
+}
+
+/// An element that is read only to get past it.
+struct Ignored;
+
+impl PropertyAccess for Ignored {
+    fn new() -> Self {
+        Self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn header(format: &str, vertex: &str) -> Vec<u8> {
+        let mut text = format!("ply\nformat {format} 1.0\ncomment a test\nelement vertex 4\n");
+        for name in vertex.split(' ') {
+            text.push_str(&format!("property float {name}\n"));
+        }
+        text.push_str("element face 1\nproperty list uchar int vertex_indices\nend_header\n");
+        text.into_bytes()
+    }
+
+    fn binary(big: bool) -> Vec<u8> {
+        let mut bytes = header(if big { "binary_big_endian" } else { "binary_little_endian" }, "x y z u v");
+        let number = |v: f32| if big { v.to_be_bytes() } else { v.to_le_bytes() };
+        for (x, y) in [(0., 0.), (1., 0.), (1., 1.), (0., 1.)] {
+            [x, y, 0.5, x, y].iter().for_each(|&v| bytes.extend(number(v)));
+        }
+        bytes.push(4);
+        (0..4).for_each(|i: i32| bytes.extend(if big { i.to_be_bytes() } else { i.to_le_bytes() }));
+        bytes
+    }
+
+    #[test]
+    fn text_and_both_byte_orders_give_the_same_mesh() {
+        let mut ascii = header("ascii", "x y z u v");
+        ascii.extend(b"0 0 .5 0 0\n1 0 .5 1 0\n1 1 .5 1 1\n0 1 .5 0 1\n4 0 1 2 3\n");
+        let mesh = parse(&ascii).unwrap();
+        assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
+        assert_eq!(mesh.positions[2], Vec3::new(1.0, 1.0, 0.5));
+        assert_eq!(mesh.uvs[3], Vec2::new(0.0, 1.0));
+        assert!(mesh.normals.is_empty());
+        assert_eq!(parse(&binary(false)).unwrap(), mesh);
+        assert_eq!(parse(&binary(true)).unwrap(), mesh);
+    }
+
+    #[test]
+    fn every_truncation_is_an_error() {
+        let whole = binary(false);
+        for cut in 0..whole.len() {
+            assert!(parse(&whole[..cut]).is_err(), "cut at {cut}");
+        }
+    }
+
+    #[test]
+    fn counts_that_lie_are_refused_at_once() {
+        for count in ["4000000000", "18446744073709551615"] {
+            let text = format!(
+                "ply\nformat ascii 1.0\nelement junk {count}\nelement vertex 0\nproperty float x\n\
+                 property float y\nproperty float z\nend_header\n"
+            );
+            assert!(parse(text.as_bytes()).is_err());
+        }
+    }
+}

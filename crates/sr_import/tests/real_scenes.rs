@@ -1,0 +1,90 @@
+//! Scene files that other people made. They are not part of the project: they lie in `../shared/scenes` beside
+//! it, or where `STERADIAN_SCENES` says. Without them these tests fail under CI, and say that they did not run
+//! elsewhere.
+
+use std::path::{Path, PathBuf};
+
+use sr_import::{LoadOptions, load};
+use sr_scene::{Geometry, SceneDesc, Severity};
+
+fn scenes() -> Option<PathBuf> {
+    let default = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/scenes");
+    let folder = std::env::var_os("STERADIAN_SCENES").map_or(default, PathBuf::from);
+    if folder.is_dir() {
+        return Some(folder);
+    }
+    assert!(std::env::var_os("CI").is_none(), "no scenes in {}: set STERADIAN_SCENES", folder.display());
+    eprintln!("not run: no scenes in {}", folder.display());
+    None
+}
+
+fn triangles(scene: &SceneDesc) -> usize {
+    let count = |shape: &sr_scene::ShapeDesc| match &shape.geometry {
+        Geometry::Mesh(mesh) => mesh.triangles.len(),
+        _ => 0,
+    };
+    scene.shapes.iter().map(count).sum()
+}
+
+/// Name, shapes, triangles, materials at least, lights without a shape, longest path, warnings by code.
+type Expected = (&'static str, usize, usize, usize, Option<u32>, &'static [&'static str]);
+
+const SIX: [Expected; 6] = [
+    ("cornell-box", 8, 36, 0, Some(30), &[]),
+    ("veach-mis", 9, 52, 0, Some(2), &[]),
+    ("veach-bidir", 14, 0, 0, Some(25), &[]),
+    ("veach-ajar", 22, 0, 0, Some(13), &[]),
+    ("living-room", 67, 0, 1, Some(65), &[]),
+    ("staircase", 775, 0, 0, Some(65), &[]),
+];
+
+#[test]
+fn the_six_scenes_load() {
+    let Some(folder) = scenes() else { return };
+    for (name, shapes, count, lights, depth, codes) in SIX {
+        let (scene, diagnostics) = load(&folder.join(name).join("scene.xml"), &LoadOptions::default());
+        let found: Vec<&str> = diagnostics.list.iter().map(|d| d.code).collect();
+        assert_eq!(found, codes, "{name}\n{}", diagnostics.render(false));
+        let scene = scene.expect("a scene without errors");
+        eprintln!("{name}: {} shapes, {} triangles, depth {:?}", scene.shapes.len(), triangles(&scene), scene.settings.max_depth);
+        assert_eq!((scene.shapes.len(), triangles(&scene), scene.lights.len()), (shapes, count, lights), "{name}");
+        assert_eq!(scene.settings.max_depth, depth, "{name}");
+    }
+}
+
+/// Mitsuba's own test files use all that there is, and most of it is not done here: nothing may panic, and
+/// whatever fails has to say why.
+#[test]
+fn the_suite_of_mitsuba_is_read_without_panic() {
+    let Some(folder) = scenes() else { return };
+    let folder = folder.join("mitsuba-suite");
+    let mut files = Vec::new();
+    collect(&folder, &mut files);
+    assert!(files.len() > 100, "only {} files: no evidence", files.len());
+    let options = LoadOptions { search_paths: vec![folder.join("common")], ..LoadOptions::default() };
+    let (mut loaded, mut failed) = (0, 0);
+    for file in &files {
+        let (scene, diagnostics) = load(file, &options);
+        assert_eq!(scene.is_none(), diagnostics.has_errors(), "{}", file.display());
+        if scene.is_some() {
+            loaded += 1;
+        } else {
+            failed += 1;
+            let first = diagnostics.list.iter().find(|d| d.severity == Severity::Error).expect("an error");
+            eprintln!("{}", diagnostics.one_line(first));
+        }
+        assert!(!diagnostics.render(true).is_empty() || diagnostics.list.is_empty());
+    }
+    eprintln!("{loaded} loaded, {failed} failed");
+}
+
+fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).expect("a readable folder").flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            collect(&path, files);
+        } else if path.extension().is_some_and(|e| e == "xml") {
+            files.push(path);
+        }
+    }
+}
