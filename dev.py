@@ -1,0 +1,222 @@
+#!/usr/bin/env python3
+"""Builds Steradian into .venv, and runs or tests it from there. The system's Python stays as it is.
+
+    python3 dev.py render scenes/cornell-box.xml     build if need be, then: steradian render scenes/...
+    python3 dev.py info scenes/cornell-box.xml       the same for any other steradian command
+    python3 dev.py build                             build only
+    python3 dev.py test                              formatting, lints, documentation, all tests
+    python3 dev.py test -k merge                     only Python's tests, with these arguments for pytest
+
+Needs Rust (rustup.rs) and Python 3.11 or newer with pip; nothing else.
+"""
+
+import hashlib
+import importlib.util
+import os
+import re
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent
+VENV = ROOT / ".venv"
+PYTHON = VENV / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
+STAMP = VENV / "steradian-built-from.txt"
+TOOLS_STAMP = VENV / "steradian-test-tools.txt"
+SOURCES = ("crates", "python", "Cargo.toml", "Cargo.lock", "pyproject.toml", "rust-toolchain.toml", "README.md")
+OLDEST_PYTHON = (3, 11)
+# The last line of a test runner, such as "test result: ok. 12 passed" or "31 passed in 4.20s".
+CLOSING_LINE = re.compile(r"^test result: |^=*\s*\d+ (passed|failed|skipped|error).* in [\d.:]+s|^no tests ran")
+
+
+def main(arguments):
+    """Does what the module's text says; returns the exit code."""
+    if not arguments or arguments[0] in ("-h", "--help"):
+        print(__doc__.strip())
+        return 0 if arguments else 2
+    check_tools()
+    if arguments[0] == "test":
+        return test(arguments[1:])
+    build()
+    if arguments[0] == "build":
+        return 0
+    command = [str(PYTHON), "-m", "steradian", *arguments]
+    if os.name == "posix":
+        # The command takes this process's place, so that Ctrl-C reaches it alone.
+        sys.stdout.flush()
+        os.execv(command[0], command)
+    return run_ignoring_interrupts(command)
+
+
+def check_tools():
+    """Ends with one sentence if something is missing that only the user can install."""
+    if sys.version_info < OLDEST_PYTHON:
+        found = "{}.{}".format(*sys.version_info)
+        sys.exit(f"dev.py needs Python 3.11 or newer, and this is {found}; run it with a newer one: python3.11 dev.py")
+    cargo_bin = Path.home() / ".cargo" / "bin"
+    if shutil.which("cargo") is None:
+        # rustup was installed in this very shell, which does not know it yet.
+        os.environ["PATH"] += os.pathsep + str(cargo_bin)
+    if shutil.which("cargo") is None:
+        sys.exit("dev.py needs Rust's cargo, which is not there; install it with rustup, see https://rustup.rs")
+
+
+def test(pytest_arguments):
+    """Runs every check, or only pytest if it is given arguments; returns the exit code."""
+    make_venv()
+    closing_lines = []
+    failed = []
+    checks = [] if pytest_arguments else cargo_checks()
+    for name, command, environment in checks:
+        if not run_check(name, command, environment, closing_lines):
+            failed.append(name)
+    build()
+    install_test_tools()
+    if not run_check("pytest", [str(PYTHON), "-m", "pytest", "-q", *pytest_arguments], {}, closing_lines):
+        failed.append("pytest")
+    heading("closing lines")
+    print("\n".join(closing_lines))
+    print(f"failed: {', '.join(failed)}" if failed else "all checks passed")
+    return 1 if failed else 0
+
+
+def cargo_checks():
+    """(name, command, environment) of what Rust's tools check."""
+    python = {"PYO3_PYTHON": str(PYTHON)}
+    return [
+        ("cargo fmt", ["cargo", "fmt", "--all", "--check"], {}),
+        (
+            "cargo clippy",
+            ["cargo", "clippy", "--workspace", "--all-targets", "--locked", "--", "-D", "warnings"],
+            python,
+        ),
+        (
+            "cargo doc",
+            ["cargo", "doc", "--workspace", "--no-deps", "--locked"],
+            {**python, "RUSTDOCFLAGS": "-D warnings"},
+        ),
+        ("cargo test", ["cargo", "test", "--workspace", "--locked"], python),
+    ]
+
+
+def run_check(name, command, environment, closing_lines):
+    """Runs a command, shows what it says, keeps its closing lines; did it succeed?"""
+    heading(name)
+    start = time.monotonic()
+    process = subprocess.Popen(
+        command,
+        cwd=ROOT,
+        env={**os.environ, **environment},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        encoding="utf-8",
+        errors="replace",
+    )
+    for line in process.stdout:
+        sys.stdout.write(line)
+        sys.stdout.flush()
+        if CLOSING_LINE.search(line) and not line.startswith("test result: ok. 0 passed; 0 failed; 0 ignored"):
+            closing_lines.append(f"{name}: {line.strip().strip('= ')}")
+    succeeded = process.wait() == 0
+    closing_lines.append(f"{name}: {'ok' if succeeded else 'FAILED'}, {time.monotonic() - start:.0f} s")
+    return succeeded
+
+
+def heading(text):
+    """Says what comes next."""
+    print(f"\n== {text}", flush=True)
+
+
+def build():
+    """Installs the package into .venv, if its sources have changed since the last time."""
+    make_venv()
+    once(STAMP, source_hash(), "building; the first time takes some minutes", [str(ROOT)])
+
+
+def install_test_tools():
+    """Installs what pyproject.toml lists for tests."""
+    import tomllib
+
+    with open(ROOT / "pyproject.toml", "rb") as file:
+        tools = tomllib.load(file)["project"]["optional-dependencies"]["test"]
+    once(TOOLS_STAMP, "\n".join(tools), "installing what the tests need", tools)
+
+
+def once(stamp, wanted, what, requirements):
+    """Installs into .venv, unless ``stamp`` says that it was done for the same ``wanted``."""
+    if stamp.exists() and stamp.read_text(encoding="utf-8") == wanted:
+        return
+    say(what)
+    stamp.unlink(missing_ok=True)
+    run_quietly([*pip(), "install", "--disable-pip-version-check", *requirements])
+    stamp.write_text(wanted, encoding="utf-8")
+
+
+def make_venv():
+    """Makes .venv unless there is one that works."""
+    if PYTHON.exists() and subprocess.run([str(PYTHON), "-c", ""], capture_output=True).returncode == 0:
+        return
+    command = [sys.executable, "-m", "venv", "--clear", str(VENV)]
+    if importlib.util.find_spec("ensurepip") is None:
+        # Debian and its kin ship pip and venv's other half apart: this interpreter's pip serves .venv as well.
+        if importlib.util.find_spec("pip") is None:
+            sys.exit(
+                "dev.py needs pip, which this Python lacks; install it (Debian, Ubuntu: apt install python3-venv)"
+            )
+        command.append("--without-pip")
+    say("making .venv")
+    run_quietly(command)
+
+
+def pip():
+    """The pip that installs into .venv."""
+    if subprocess.run([str(PYTHON), "-c", "import pip"], capture_output=True).returncode == 0:
+        return [str(PYTHON), "-m", "pip"]
+    return [sys.executable, "-m", "pip", "--python", str(PYTHON)]
+
+
+def source_hash():
+    """Of the names and contents of everything that the package is built from."""
+    digest = hashlib.sha256()
+    for name in SOURCES:
+        top = ROOT / name
+        files = sorted(top.rglob("*")) if top.is_dir() else [top]
+        for path in files:
+            if path.is_file() and path.suffix not in (".pyc", ".so", ".pyd") and "__pycache__" not in path.parts:
+                digest.update(f"{path.relative_to(ROOT).as_posix()}\0".encode())
+                digest.update(hashlib.sha256(path.read_bytes()).digest())
+    return digest.hexdigest()
+
+
+def run_quietly(command):
+    """Runs a command; shows what it said, and ends, only if it failed."""
+    done = subprocess.run(
+        command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, encoding="utf-8", errors="replace"
+    )
+    if done.returncode != 0:
+        sys.stderr.write(done.stdout)
+        sys.exit(f"failed: {' '.join(command)}")
+
+
+def run_ignoring_interrupts(command):
+    """Runs a command that answers Ctrl-C itself; returns its exit code."""
+    with subprocess.Popen(command) as process:
+        while True:
+            try:
+                return process.wait()
+            except KeyboardInterrupt:
+                continue
+
+
+def say(text):
+    """To standard error: standard output belongs to the command that runs."""
+    print(f"dev.py: {text}", file=sys.stderr, flush=True)
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main(sys.argv[1:]))
+    except KeyboardInterrupt:
+        sys.exit(130)

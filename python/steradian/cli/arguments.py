@@ -1,0 +1,192 @@
+"""The command line's grammar, and the checks that need no scene."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Callable, Sequence
+from typing import NoReturn
+
+from steradian import _internal
+from steradian.render import MAX_SPP
+from steradian.strategy import strategy
+
+EXAMPLES = """\
+examples:
+  steradian render scenes/cornell-box.xml                        to cornell-box.exr
+  steradian render scene.xml -o a.exr -o a.png --spp 256 --exposure 1
+  steradian render scene.xml --time 60 --size 640x360            as good as a minute allows
+  steradian render scene.xml --strategy "0.5 cosine + 0.5 light"
+  steradian render scene.xml --strategy "mis(bsdf, light, heuristic=balance)" --json
+  steradian info scene.xml
+"""
+
+
+class _Parser(argparse.ArgumentParser):
+    """Errors are one line."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(2, f"error: {message} (see {self.prog} --help)\n")
+
+
+def parse(argv: Sequence[str] | None = None) -> argparse.Namespace:
+    """The arguments, typed and checked. Exits with 2 if they make no sense."""
+    parser = _Parser(
+        prog="steradian",
+        description="Renders scenes by Monte Carlo and says how sure it is of every pixel.",
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    parser.add_argument("--version", action="version", version=f"steradian {_internal.__version__}")
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    _add_render(commands)
+    _add_info(commands)
+    return parser.parse_args(argv)
+
+
+def _add_render(commands: argparse._SubParsersAction) -> None:
+    parser = commands.add_parser(
+        "render",
+        help="render a scene to image files",
+        description="Renders SCENE. Succeeds only if every output was written.",
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    _add_scene(parser)
+    add = parser.add_argument
+    add(
+        "-o",
+        "--output",
+        metavar="FILE",
+        action="append",
+        help="image to write: .exr has all layers, .png is for looking at; may be repeated "
+        "(default: the scene's name with .exr, in the current folder)",
+    )
+    add("--spp", metavar="N", type=_integer(1, MAX_SPP), help="samples per pixel (default: the scene's)")
+    add("--time", metavar="SECONDS", type=_seconds, help="stop sampling after this time")
+    add(
+        "--strategy",
+        metavar="EXPR",
+        type=_strategy,
+        help="how directions are chosen: uniform, cosine, bsdf, light, a mixture such as "
+        '"0.5 cosine + 0.5 light", or "mis(bsdf, light)" (the default)',
+    )
+    add("--sampler", metavar="NAME", type=_sampler, default="sobol", help="sobol (default) or independent")
+    add(
+        "--max-depth",
+        metavar="N",
+        type=_depth,
+        help="longest path in edges: 1 emitters only, 2 direct light, -1 unbounded (default: the scene's)",
+    )
+    add("--size", metavar="WxH", type=_size, help="pixels, such as 640x360 (default: the scene's)")
+    add("--seed", metavar="N", type=_integer(0, 2**64 - 1), default=0, help="another seed, another noise")
+    add(
+        "--threads",
+        metavar="N",
+        type=_integer(1, _internal.MAX_THREADS),
+        help="threads (default: all available cores); the image does not depend on it",
+    )
+    add("--exposure", metavar="EV", type=_stops, default=0.0, help="brightens a .png by 2^EV")
+    add("--tone", choices=_internal.tones(), default="srgb", help="tone curve of a .png (default: srgb)")
+    add("--quiet", action="store_true", help="no progress and no summary; warnings and errors remain")
+    add("--json", action="store_true", help="print one JSON object on standard output instead of the summary")
+
+
+def _add_info(commands: argparse._SubParsersAction) -> None:
+    parser = commands.add_parser(
+        "info",
+        help="say what is in a scene",
+        description="Loads SCENE and says what is in it.",
+        allow_abbrev=False,
+    )
+    _add_scene(parser)
+    parser.add_argument("--json", action="store_true", help="print one JSON object on standard output")
+
+
+def _add_scene(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("scene", metavar="SCENE", help="a Mitsuba XML file")
+    parser.add_argument(
+        "--define",
+        "-D",
+        metavar="NAME=VALUE",
+        action="append",
+        default=[],
+        type=_definition,
+        help="a value for $NAME in the scene file; may be repeated",
+    )
+
+
+def _integer(low: int, high: int) -> Callable[[str], int]:
+    def convert(text: str) -> int:
+        try:
+            value = int(text)
+        except ValueError:
+            raise argparse.ArgumentTypeError(f"{text!r} is not a whole number") from None
+        if not low <= value <= high:
+            raise argparse.ArgumentTypeError(f"{text} is not from {low} to {high}")
+        return value
+
+    return convert
+
+
+def _depth(text: str) -> int:
+    if text == "-1":
+        return -1
+    try:
+        return _integer(1, 2**31 - 1)(text)
+    except argparse.ArgumentTypeError:
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is neither a number of path edges, at least 1, nor -1 for no limit"
+        ) from None
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number") from None
+
+
+def _seconds(text: str) -> float:
+    seconds = _number(text)
+    if not (seconds > 0.0 and math.isfinite(seconds)):
+        raise argparse.ArgumentTypeError(f"{text} is not a positive number of seconds")
+    return seconds
+
+
+def _stops(text: str) -> float:
+    stops = _number(text)
+    if not abs(stops) <= 100.0:
+        raise argparse.ArgumentTypeError(f"{text} is not a number of stops from -100 to 100")
+    return stops
+
+
+def _size(text: str) -> tuple[int, int]:
+    width, x, height = text.lower().partition("x")
+    if not (x and width.isascii() and width.isdigit() and height.isascii() and height.isdigit()):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a size such as 640x360")
+    return int(width), int(height)
+
+
+def _strategy(text: str) -> str:
+    return _checked(lambda: str(strategy(text)))
+
+
+def _sampler(text: str) -> str:
+    return _checked(lambda: _internal.normalize_sampler(text))
+
+
+def _checked(convert: Callable[[], str]) -> str:
+    try:
+        return convert()
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+
+
+def _definition(text: str) -> tuple[str, str]:
+    name, equals, value = text.partition("=")
+    if not (name and equals):
+        raise argparse.ArgumentTypeError(f"{text!r} is not of the form NAME=VALUE")
+    return name, value

@@ -1,0 +1,56 @@
+"""``steradian info``."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from typing import Any
+
+from steradian.cli.loading import load
+from steradian.cli.report import print_json
+
+FAILED = 1
+
+
+def info(arguments: argparse.Namespace) -> int:
+    """Says what is in a scene; the exit code."""
+    scene = load(arguments)
+    if scene is None:
+        return FAILED
+    values = scene.info()
+    if arguments.json:
+        print_json(values)
+    else:
+        print(describe(values))
+    return 0
+
+
+def describe(values: dict[str, Any]) -> str:
+    """A few lines for people."""
+    camera, film, settings = values["camera"], values["film"], values["settings"]
+    depth = "unbounded" if settings["max_depth"] == -1 else f"{settings['max_depth']} edges"
+    lens = f", lens radius {camera['aperture_radius']:g}" if camera["aperture_radius"] else ""
+    bounds = values["bounds"]
+    rows = [
+        ("scene", values["scene"]),
+        ("film", f"{film['width']} x {film['height']} pixels, {film['filter']} filter"),
+        (
+            "camera",
+            f"at {_point(camera['position'])} towards {_point(camera['direction'])}, "
+            f"{camera['fov_x_deg']:.4g} degrees wide{lens}",
+        ),
+        ("asks for", f"{settings['spp']} spp, depth {depth}"),
+        ("shapes", f"{values['shapes']} ({values['triangles']} triangles, {values['instances']} instances)"),
+        ("materials", str(values["materials"])),
+        ("textures", str(values["textures"])),
+        ("lights", str(values["lights"])),
+        ("bounds", "empty" if bounds is None else f"{_point(bounds[0])} to {_point(bounds[1])}"),
+        ("memory", f"{values['memory_bytes'] / 2**20:.1f} MiB"),
+        ("loaded in", f"{values['load_seconds']:.2f} s"),
+        ("warnings", str(len(values["diagnostics"]))),
+    ]
+    return "\n".join(f"{name:10} {text}" for name, text in rows)
+
+
+def _point(values: list[float]) -> str:
+    return "(" + ", ".join(f"{v:.4g}" if math.isfinite(v) else str(v) for v in values) + ")"
