@@ -9,6 +9,8 @@
 mod build;
 mod simd;
 mod split;
+#[cfg(test)]
+mod tests;
 mod traverse;
 
 use glam::Vec3;

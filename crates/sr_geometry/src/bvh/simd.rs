@@ -4,9 +4,13 @@
 
 use super::WIDTH;
 
+/// The bits of a key that tell its lane.
+pub(super) const LANE: u32 = WIDTH as u32 - 1;
+
 /// Eight lanes. `min(a, b)` and `max(a, b)` return `b` where either is NaN.
 pub(super) trait Simd: Copy {
     type F: Copy;
+    type Keys: Copy;
     fn splat(self, x: f32) -> Self::F;
     fn load(self, x: &[f32; WIDTH]) -> Self::F;
     fn to_array(self, x: Self::F) -> [f32; WIDTH];
@@ -18,10 +22,15 @@ pub(super) trait Simd: Copy {
     fn max(self, a: Self::F, b: Self::F) -> Self::F;
     /// Bit i: a[i] ≤ b[i]; false where either is NaN.
     fn le(self, a: Self::F, b: Self::F) -> u32;
+    /// What orders the lanes by `x` ≥ 0: the bits of x[i] with the lowest three replaced by i.
+    /// `u32::MAX` for lanes where not x[i] ≤ `limit`[i].
+    fn keys(self, x: Self::F, limit: Self::F) -> Self::Keys;
+    /// Removes and returns the smallest key, leaving `u32::MAX` in its lane.
+    fn take_least(self, keys: &mut Self::Keys) -> u32;
     /// Bit i: a[i] < b[i]; false where either is NaN.
     fn lt(self, a: Self::F, b: Self::F) -> u32;
-    /// Asks for the cache lines of a value that is needed soon.
-    fn prefetch<T>(self, value: &T);
+    /// Asks for the cache lines of a `T` that may be needed soon. Any address will do: nothing is read.
+    fn prefetch<T>(self, start: *const T);
 }
 
 /// Plain Rust, which compilers turn into SSE2 or NEON.
@@ -35,6 +44,7 @@ fn lanes<R>(f: impl Fn(usize) -> R) -> [R; WIDTH] {
 
 impl Simd for Portable {
     type F = [f32; WIDTH];
+    type Keys = [u32; WIDTH];
 
     #[inline(always)]
     fn splat(self, x: f32) -> Self::F {
@@ -81,7 +91,17 @@ impl Simd for Portable {
         (0..WIDTH).fold(0, |mask, i| mask | u32::from(a[i] < b[i]) << i)
     }
     #[inline(always)]
-    fn prefetch<T>(self, _value: &T) {}
+    fn keys(self, x: Self::F, limit: Self::F) -> Self::Keys {
+        lanes(|i| if x[i] <= limit[i] { x[i].to_bits() & !LANE | i as u32 } else { u32::MAX })
+    }
+    #[inline(always)]
+    fn take_least(self, keys: &mut Self::Keys) -> u32 {
+        let least = keys.iter().fold(u32::MAX, |least, &key| least.min(key));
+        *keys = lanes(|i| if keys[i] == least { u32::MAX } else { keys[i] });
+        least
+    }
+    #[inline(always)]
+    fn prefetch<T>(self, _start: *const T) {}
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -91,7 +111,7 @@ pub(super) use avx2::Avx2;
 mod avx2 {
     use std::arch::x86_64::*;
 
-    use super::{Simd, WIDTH};
+    use super::{LANE, Simd, WIDTH};
 
     /// Proof that this processor has AVX2, BMI1, BMI2 and LZCNT.
     #[derive(Clone, Copy, Debug)]
@@ -117,6 +137,7 @@ mod avx2 {
 
     impl Simd for Avx2 {
         type F = __m256;
+        type Keys = __m256i;
 
         #[inline(always)]
         fn splat(self, x: f32) -> Self::F {
@@ -165,10 +186,29 @@ mod avx2 {
             avx2!(_mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LT_OQ>(a, b)) as u32)
         }
         #[inline(always)]
-        fn prefetch<T>(self, value: &T) {
-            let start = std::ptr::from_ref(value).cast::<i8>();
+        fn keys(self, x: Self::F, limit: Self::F) -> Self::Keys {
+            avx2!({
+                let lane = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+                let bits = _mm256_andnot_si256(_mm256_set1_epi32(LANE as i32), _mm256_castps_si256(x));
+                let beyond = _mm256_castps_si256(_mm256_cmp_ps::<_CMP_NLE_UQ>(x, limit));
+                _mm256_or_si256(_mm256_or_si256(bits, lane), beyond)
+            })
+        }
+        #[inline(always)]
+        fn take_least(self, keys: &mut Self::Keys) -> u32 {
+            avx2!({
+                let all = *keys;
+                let least = _mm256_min_epu32(all, _mm256_permute2x128_si256::<0x01>(all, all));
+                let least = _mm256_min_epu32(least, _mm256_shuffle_epi32::<0b01_00_11_10>(least));
+                let least = _mm256_min_epu32(least, _mm256_shuffle_epi32::<0b10_11_00_01>(least));
+                *keys = _mm256_or_si256(all, _mm256_cmpeq_epi32(all, least));
+                _mm256_cvtsi256_si32(least) as u32
+            })
+        }
+        #[inline(always)]
+        fn prefetch<T>(self, start: *const T) {
             for offset in (0..size_of::<T>()).step_by(64) {
-                avx2!(_mm_prefetch::<_MM_HINT_T0>(start.add(offset)));
+                avx2!(_mm_prefetch::<_MM_HINT_T0>(start.cast::<i8>().wrapping_add(offset)));
             }
         }
     }

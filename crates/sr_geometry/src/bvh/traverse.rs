@@ -10,12 +10,12 @@ use std::mem::MaybeUninit;
 
 use glam::Vec3;
 
-use super::simd::{Kernel, Portable, Simd};
+use super::simd::{Kernel, LANE, Portable, Simd};
 use super::{Bvh, MAX_DEPTH, Node, NodeRef, Tree, TriangleBlock, WIDTH};
 use crate::{Bounds3, Hit, NO_INSTANCE, Ray, ShapeId};
 
-/// Each node leaves at most seven children waiting.
-const STACK_SIZE: usize = MAX_DEPTH * (WIDTH - 1);
+/// Orders of axes, by the last.
+static AXES: [[usize; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
 
 /// How an interval's end grows to cover the three roundings of (bound − origin) · (1 / direction).
 const FAR_SLACK: f32 = 1.0 + 4.0 * f32::EPSILON;
@@ -41,13 +41,13 @@ struct Prepared<S: Simd> {
 }
 
 impl<S: Simd> Prepared<S> {
-    /// `None` for rays that cannot hit anything: not finite, or without a direction.
+    /// `None` for rays that cannot hit anything: not finite, or without a direction or an extent.
     #[inline(always)]
     fn new(simd: S, ray: &Ray, bounds: &Bounds3) -> Option<Self> {
         let (origin, direction) = (ray.origin, ray.direction);
         let length = direction.abs();
         let sum = (origin.abs() + length).element_sum();
-        if !(sum < f32::INFINITY && length.max_element() > 0.0) {
+        if !(sum < f32::INFINITY && length.max_element() > 0.0 && ray.t_max > 0.0) {
             return None;
         }
         let last = match () {
@@ -55,31 +55,26 @@ impl<S: Simd> Prepared<S> {
             () if length.y > length.z => 1,
             () => 2,
         };
-        let axes = [[1, 2, 0], [2, 0, 1], [0, 1, 2]][last];
+        let axes = AXES[last];
         let scale = 1.0 / direction[axes[2]];
         let inverse = direction.recip();
         let reach = (bounds.min - origin).abs().max((bounds.max - origin).abs()).max_element();
         let error = Vec3::splat(SHEAR_SLACK * reach).copysign(inverse);
-        let splat = |v: Vec3| [simd.splat(v.x), simd.splat(v.y), simd.splat(v.z)];
         Some(Self {
-            near: [0, 1, 2].map(|axis| usize::from(inverse[axis] < 0.0)),
-            origin_near: splat(origin + error),
-            origin_far: splat(origin - error),
-            inv_near: splat(inverse),
-            inv_far: splat(inverse * FAR_SLACK),
+            near: [usize::from(inverse.x < 0.0), usize::from(inverse.y < 0.0), usize::from(inverse.z < 0.0)],
+            origin_near: splat(simd, origin + error),
+            origin_far: splat(simd, origin - error),
+            inv_near: splat(simd, inverse),
+            inv_far: splat(simd, inverse * FAR_SLACK),
             axes,
-            origin: axes.map(|axis| simd.splat(origin[axis])),
-            shear: [
-                simd.splat(direction[axes[0]] * scale),
-                simd.splat(direction[axes[1]] * scale),
-                simd.splat(scale),
-            ],
+            origin: splat(simd, Vec3::new(origin[axes[0]], origin[axes[1]], origin[axes[2]])),
+            shear: splat(simd, Vec3::new(direction[axes[0]] * scale, direction[axes[1]] * scale, scale)),
         })
     }
 
-    /// Which children of a node the ray meets before `t_max` (bit i: child i), and where it enters them.
+    /// The children of a node that the ray meets before `t_max`, ordered by where it enters them.
     #[inline(always)]
-    fn meet_node(&self, simd: S, node: &Node, t_max: S::F) -> (u32, S::F) {
+    fn meet_node(&self, simd: S, node: &Node, t_max: S::F) -> S::Keys {
         let mut enter = simd.splat(0.0);
         let mut leave = t_max;
         for axis in 0..3 {
@@ -90,15 +85,16 @@ impl<S: Simd> Prepared<S> {
             enter = simd.max(simd.mul(simd.sub(near, self.origin_near[axis]), self.inv_near[axis]), enter);
             leave = simd.min(simd.mul(simd.sub(far, self.origin_far[axis]), self.inv_far[axis]), leave);
         }
-        (simd.le(enter, leave), enter)
+        simd.keys(enter, leave)
     }
 
     /// Which triangles of a block the ray meets in (0, `t_max`), with their t and barycentric coordinates.
     #[inline(always)]
     fn meet_block(&self, simd: S, block: &TriangleBlock, t_max: f32) -> Option<(u32, [S::F; 3])> {
-        let [a, b, c] = [0, 1, 2].map(|i| self.sheared(simd, &block.vertices[i]));
-        let edge = |p: [S::F; 3], q: [S::F; 3]| simd.sub(simd.mul(p[0], q[1]), simd.mul(p[1], q[0]));
-        let (of_a, of_b, of_c) = (edge(c, b), edge(a, c), edge(b, a));
+        let a = self.sheared(simd, &block.vertices[0]);
+        let b = self.sheared(simd, &block.vertices[1]);
+        let c = self.sheared(simd, &block.vertices[2]);
+        let (of_a, of_b, of_c) = (edge(simd, c, b), edge(simd, a, c), edge(simd, b, a));
         let zero = simd.splat(0.0);
         let least = simd.min(simd.min(of_a, of_b), of_c);
         let most = simd.max(simd.max(of_a, of_b), of_c);
@@ -118,75 +114,31 @@ impl<S: Simd> Prepared<S> {
     /// A vertex relative to the ray: sheared x and y, and unscaled z.
     #[inline(always)]
     fn sheared(&self, simd: S, vertex: &[[f32; WIDTH]; 3]) -> [S::F; 3] {
-        let relative = |i: usize| simd.sub(simd.load(&vertex[self.axes[i]]), self.origin[i]);
-        let z = relative(2);
-        let shear = |i: usize| simd.sub(relative(i), simd.mul(self.shear[i], z));
-        [shear(0), shear(1), z]
+        let x = simd.sub(simd.load(&vertex[self.axes[0]]), self.origin[0]);
+        let y = simd.sub(simd.load(&vertex[self.axes[1]]), self.origin[1]);
+        let z = simd.sub(simd.load(&vertex[self.axes[2]]), self.origin[2]);
+        [simd.sub(x, simd.mul(self.shear[0], z)), simd.sub(y, simd.mul(self.shear[1], z)), z]
     }
 }
 
-/// Children that wait, nearest on top.
-struct Stack {
-    entries: [MaybeUninit<(f32, NodeRef)>; STACK_SIZE],
-    len: usize,
+// Functions rather than closures: only what is always inlined is compiled for the instruction set of the caller.
+
+#[inline(always)]
+fn splat<S: Simd>(simd: S, v: Vec3) -> [S::F; 3] {
+    [simd.splat(v.x), simd.splat(v.y), simd.splat(v.z)]
 }
 
-impl Stack {
-    #[inline(always)]
-    fn new() -> Self {
-        Self { entries: [const { MaybeUninit::uninit() }; STACK_SIZE], len: 0 }
-    }
+/// Twice the signed area between the ray and the projected edge from `q` to `p`.
+#[inline(always)]
+fn edge<S: Simd>(simd: S, p: [S::F; 3], q: [S::F; 3]) -> S::F {
+    simd.sub(simd.mul(p[0], q[1]), simd.mul(p[1], q[0]))
+}
 
-    #[inline(always)]
-    fn push(&mut self, entry: (f32, NodeRef)) {
-        self.entries[self.len].write(entry);
-        self.len += 1;
-    }
-
-    #[inline(always)]
-    fn get(&self, i: usize) -> (f32, NodeRef) {
-        debug_assert!(i < self.len);
-        // SAFETY: entries below `len` are always written, and `(f32, NodeRef)` is `Copy`.
-        unsafe { self.entries[i].assume_init() }
-    }
-
-    /// The entry on top. There must be one.
-    #[inline(always)]
-    fn take(&mut self) -> (f32, NodeRef) {
-        let entry = self.get(self.len - 1);
-        self.len -= 1;
-        entry
-    }
-
-    /// The nearest child that the ray enters before `t_max`.
-    #[inline(always)]
-    fn pop(&mut self, t_max: f32) -> Option<NodeRef> {
-        while self.len > 0 {
-            let (enter, child) = self.take();
-            if enter < t_max {
-                return Some(child);
-            }
-        }
-        None
-    }
-
-    /// Pushes the children in `mask`, farthest first.
-    #[inline(always)]
-    fn push_sorted(&mut self, mut mask: u32, enter: &[f32; WIDTH], children: &[NodeRef; WIDTH]) {
-        let first = self.len;
-        while mask != 0 {
-            let child = mask.trailing_zeros() as usize % WIDTH;
-            mask &= mask - 1;
-            let entry = (enter[child], children[child]);
-            let mut at = self.len;
-            while at > first && self.get(at - 1).0 < entry.0 {
-                self.entries[at] = self.entries[at - 1];
-                at -= 1;
-            }
-            self.entries[at].write(entry);
-            self.len += 1;
-        }
-    }
+/// The children of a node that wait for their turn.
+#[derive(Clone, Copy)]
+struct Waiting<'a, S: Simd> {
+    keys: S::Keys,
+    children: &'a [NodeRef; WIDTH],
 }
 
 /// Walks `tree`. `ANY`: stops at the first hit, which need not be the closest.
@@ -201,41 +153,46 @@ fn walk<S: Simd, const ANY: bool>(
     let prepared = Prepared::new(simd, ray, &tree.bounds)?;
     let mut ray = *ray;
     let mut closest = None;
-    let mut stack = Stack::new();
-    if tree.root != NodeRef::NONE {
-        stack.push((0.0, tree.root));
-    }
-    while let Some(mut child) = stack.pop(ray.t_max) {
-        while child.is_node() {
+    // A node waits here only while the walk is below it.
+    let mut stack = [const { MaybeUninit::<Waiting<'_, S>>::uninit() }; MAX_DEPTH];
+    let mut depth = 0;
+    let mut child = tree.root;
+    loop {
+        if child.is_node() {
             let node = &bvh.nodes[child.index()];
-            let (mask, enter) = prepared.meet_node(simd, node, simd.splat(ray.t_max));
-            if mask == 0 {
-                child = NodeRef::NONE;
-                break;
-            }
-            if mask & (mask - 1) == 0 {
-                child = node.children[mask.trailing_zeros() as usize % WIDTH];
-                continue;
-            }
-            stack.push_sorted(mask, &simd.to_array(enter), &node.children);
-            child = stack.take().1;
-        }
-        let hit = if child.is_block() {
-            meet_block(simd, &prepared, &bvh.blocks[child.index()], ray.t_max)
-        } else if child != NodeRef::NONE {
-            meet_other(child.index() as u32, &ray)
+            let keys = prepared.meet_node(simd, node, simd.splat(ray.t_max));
+            stack[depth].write(Waiting { keys, children: &node.children });
+            depth += 1;
         } else {
-            None
-        };
-        if let Some(hit) = hit {
-            if ANY {
-                return Some(hit);
+            let hit = if child.is_block() {
+                meet_block(simd, &prepared, &bvh.blocks[child.index()], ray.t_max)
+            } else if child != NodeRef::NONE {
+                meet_other(child.index() as u32, &ray)
+            } else {
+                None
+            };
+            if let Some(hit) = hit {
+                if ANY {
+                    return Some(hit);
+                }
+                ray.t_max = hit.t;
+                closest = Some(hit);
             }
-            ray.t_max = hit.t;
-            closest = Some(hit);
         }
+        child = loop {
+            if depth == 0 {
+                return closest;
+            }
+            // SAFETY: every entry below `depth` was written when `depth` passed it.
+            let waiting = unsafe { stack[depth - 1].assume_init_mut() };
+            let key = simd.take_least(&mut waiting.keys);
+            // Distances are not negative, so their bits are in the order of their values.
+            if key & !LANE <= ray.t_max.to_bits() {
+                break waiting.children[(key & LANE) as usize];
+            }
+            depth -= 1;
+        };
     }
-    closest
 }
 
 /// The closest hit within a block.

@@ -1,0 +1,109 @@
+//! The tree's invariants, and the kernels against one another.
+
+use glam::Vec3;
+
+use super::simd::{Kernel, Portable};
+use super::{Bvh, MAX_DEPTH, NodeRef, PrimRef, Tree};
+use crate::{Bounds3, Ray, ShapeId};
+
+/// A triangle at `at` with edges of about `size`.
+fn triangle(at: Vec3, size: f32, i: u32) -> [Vec3; 3] {
+    let turn =
+        |k: u32| Vec3::new((i * 3 + k) as f32, (i * 5 + k * 2) as f32, (i * 7 + k * 3) as f32).map(f32::sin);
+    [at, at + size * turn(1), at + size * turn(2)]
+}
+
+fn build(triangles: &[[Vec3; 3]]) -> (Bvh, Tree) {
+    let prim = |(i, vertices): (usize, &[Vec3; 3])| PrimRef {
+        bounds: vertices.iter().fold(Bounds3::EMPTY, |bounds, &v| bounds.with(v)),
+        shape: 0,
+        primitive: i as u32,
+    };
+    let mut prims: Vec<PrimRef> = triangles.iter().enumerate().map(prim).collect();
+    let mut bvh = Bvh::new();
+    let tree = bvh.add_tree(&mut prims, |ShapeId(_), i| triangles[i as usize]);
+    (bvh, tree)
+}
+
+/// Checks that children lie in their boxes; returns the depth and every triangle found.
+fn visit(bvh: &Bvh, child: NodeRef, bounds: &Bounds3, found: &mut Vec<u32>) -> usize {
+    if child.is_block() {
+        let block = &bvh.blocks[child.index()];
+        for lane in 0..8 {
+            let vertex = |i: usize| Vec3::from_array(block.vertices[i].map(|axis| axis[lane]));
+            if vertex(0).is_finite() {
+                assert!((0..3).all(|i| bounds.with(vertex(i)) == *bounds));
+                found.push(block.primitive[lane]);
+            }
+        }
+        return 0;
+    }
+    assert!(child.is_node());
+    let node = &bvh.nodes[child.index()];
+    let mut depth = 0;
+    for slot in (0..8).filter(|&slot| node.children[slot] != NodeRef::NONE) {
+        let end = |end: usize| Vec3::from_array([0, 1, 2].map(|axis| node.bounds[axis][end][slot]));
+        let inner = Bounds3 { min: end(0), max: end(1) };
+        assert_eq!(bounds.union(inner), *bounds);
+        depth = depth.max(visit(bvh, node.children[slot], &inner, found));
+    }
+    depth + 1
+}
+
+fn check_tree(triangles: &[[Vec3; 3]]) -> usize {
+    let (bvh, tree) = build(triangles);
+    let mut found = Vec::new();
+    let depth = visit(&bvh, tree.root, &tree.bounds, &mut found);
+    found.sort_unstable();
+    assert!(found.into_iter().eq(0..triangles.len() as u32), "each triangle is in exactly one block");
+    assert!(depth <= MAX_DEPTH, "{depth}");
+    depth
+}
+
+#[test]
+fn every_triangle_is_in_one_block_within_its_boxes() {
+    for count in [1, 8, 9, 100, 10_000] {
+        let at = |i: u32| Vec3::new((i % 17) as f32, (i % 31) as f32, (i % 101) as f32);
+        let triangles: Vec<_> = (0..count).map(|i| triangle(at(i), 0.5, i)).collect();
+        check_tree(&triangles);
+    }
+}
+
+#[test]
+fn the_depth_is_bounded_where_the_heuristic_peels_off_one_at_a_time() {
+    // Sizes and distances double: the best cut always takes the largest alone.
+    let many =
+        |i: u32| triangle(Vec3::X * 2f32.powi((i % 120) as i32 - 60), 2f32.powi((i % 120) as i32 - 62), i);
+    let triangles: Vec<_> = (0..20_000).map(many).collect();
+    assert!(check_tree(&triangles) >= 6);
+    // All in one place.
+    check_tree(&[triangle(Vec3::ONE, 1.0, 3); 5000]);
+}
+
+#[test]
+fn kernels_agree_to_the_bit() {
+    let at = |i: u32| 3.0 * Vec3::new(i as f32, 1.7 * i as f32, 2.9 * i as f32).map(f32::sin);
+    for (count, size) in [(5, 2.0), (300, 1.0), (5000, 0.3)] {
+        let triangles: Vec<_> = (0..count).map(|i| triangle(at(i), size, i)).collect();
+        let (mut bvh, tree) = build(&triangles);
+        let none = |_: u32, _: &Ray| None;
+        let rays: Vec<Ray> = (0..5000u32)
+            .map(|i| {
+                let direction = at(i * 7 + 3);
+                // Some along planes and axes.
+                let direction = direction * Vec3::new((i % 5) as f32, (i % 3) as f32, 1.0);
+                Ray {
+                    t_max: if i % 4 == 0 { 0.5 } else { f32::INFINITY },
+                    ..Ray::new(at(i * 3 + 1), direction)
+                }
+            })
+            .collect();
+        let hits = |bvh: &Bvh| -> Vec<_> {
+            rays.iter().map(|ray| (bvh.intersect(&tree, ray, none), bvh.occluded(&tree, ray, none))).collect()
+        };
+        let detected = hits(&bvh);
+        bvh.kernel = Kernel::Portable(Portable);
+        assert_eq!(detected, hits(&bvh));
+        assert!(detected.iter().filter(|(hit, _)| hit.is_some()).count() > 100);
+    }
+}

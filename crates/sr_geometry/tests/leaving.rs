@@ -1,0 +1,183 @@
+//! Rays that leave a surface do not meet it again, and do not pass through it.
+
+mod common;
+
+use common::{OwnedMesh, Random, closed_box};
+use glam::{Affine3A, Quat, Vec3};
+use sr_geometry::{Disk, Geometry, GeometryInput, Hit, Instance, NO_INSTANCE, Ray, Shape, Sphere, Surface};
+
+/// Is `surface` so near an edge of the triangle that rounding may have put it outside a neighbouring side?
+fn at_an_edge(surface: &Surface, vertices: [Vec3; 3]) -> bool {
+    let distance = |i: usize| {
+        let (a, b) = (vertices[i], vertices[(i + 1) % 3]);
+        (surface.p - a).cross(b - a).length() / (b - a).length()
+    };
+    (0..3).any(|i| distance(i) <= 4.0 * surface.p_error.length())
+}
+
+/// Walks through the inside of a closed convex box. Every ray must hit, and never the flat side that it leaves
+/// (`side` numbers them). Only from within rounding errors of an edge may it be lost.
+/// Returns how often it was.
+fn walk_inside(
+    geometry: &Geometry,
+    center: Vec3,
+    steps: u32,
+    world_from_mesh: Affine3A,
+    side: impl Fn(u32) -> u32,
+    random: &mut Random,
+    what: &str,
+) -> u32 {
+    let mut ray = Ray::new(center, random.direction());
+    let mut last: Option<(Surface, Hit)> = None;
+    let mut lost = 0;
+    for step in 0..steps {
+        let hit = geometry.intersect(&ray);
+        let fine =
+            hit.is_some_and(|hit| last.is_none_or(|(_, last)| side(last.primitive) != side(hit.primitive)));
+        if !fine {
+            let (surface, left) = last.expect("a ray from the centre hits");
+            let vertices = geometry.triangle_vertices(left.shape, left.primitive);
+            let excused = at_an_edge(&surface, vertices.map(|v| world_from_mesh.transform_point3(v)));
+            assert!(excused, "{what}, step {step}: {ray:?} left {left:?} and met {hit:?}");
+            lost += 1;
+        }
+        let Some(hit) = hit.filter(|_| fine) else {
+            (ray, last) = (Ray::new(center, random.direction()), None);
+            continue;
+        };
+        let surface = geometry.surface(&ray, &hit);
+        let inwards = -surface.ng.dot(ray.direction).signum() * surface.ng;
+        // Mostly diffuse, with every sixteenth direction grazing.
+        let scatter = if random.below(16) == 0 { 1e3 } else { 0.99 };
+        let direction = inwards + scatter * random.direction();
+        let below = direction.dot(inwards);
+        let direction = if below > 0.0 { direction } else { direction - 2.0 * below * inwards };
+        ray = surface.spawn_ray(if direction.dot(inwards) > 1e-6 * direction.length() {
+            direction
+        } else {
+            inwards
+        });
+        last = Some((surface, hit));
+    }
+    lost
+}
+
+#[test]
+fn boxes_at_many_scales() {
+    let mut random = Random(21);
+    let mut lost = 0;
+    for n in [1u32, 4] {
+        for i in 0..120 {
+            let size = 10f32.powi(i % 13 - 6);
+            let at = 10f32.powi(i % 4 - 1) * size * random.cube();
+            let turn =
+                Quat::from_axis_angle(random.direction(), if i % 3 == 0 { 0.0 } else { random.unit() });
+            let mesh = closed_box(n).transformed(|p| turn * (p * size * Vec3::new(1.0, 0.7, 1.3)) + at);
+            let what = format!("n {n}, size {size}, at {at}");
+            let side = |triangle| triangle / (2 * n * n);
+            lost += walk_inside(&mesh.build(), at, 2000, Affine3A::IDENTITY, side, &mut random, &what);
+        }
+    }
+    assert!(lost < 50, "{lost} of 480000");
+}
+
+#[test]
+fn instances_that_stretch_and_mirror() {
+    let mut random = Random(22);
+    let mut lost = 0;
+    let mesh = closed_box(2);
+    for i in 0..60 {
+        let scale =
+            10f32.powi(i % 5 - 2) * Vec3::new(1.0, if i % 2 == 0 { -0.5 } else { 3.0 }, 0.3 + random.unit());
+        let at = 10.0 * random.cube();
+        let turn = Quat::from_axis_angle(random.direction(), random.unit());
+        let world_from_group = Affine3A::from_scale_rotation_translation(scale, turn, at);
+        let geometry = Geometry::build(GeometryInput {
+            groups: vec![vec![mesh.shape()]],
+            instances: vec![Instance { group: 0, world_from_group }],
+            ..Default::default()
+        })
+        .unwrap();
+        let what = format!("scale {scale}, at {at}");
+        lost +=
+            walk_inside(&geometry, at, 2000, world_from_group, |triangle| triangle / 8, &mut random, &what);
+    }
+    assert!(lost < 200, "{lost} of 120000");
+}
+
+#[test]
+fn spheres_from_inside_and_outside() {
+    let mut random = Random(23);
+    for i in 0..100 {
+        let radius = 10f32.powi(i % 9 - 4);
+        let center = radius * 10f32.powi(i % 4 - 1) * random.cube();
+        let sphere = Sphere { center, radius, frame: glam::Mat3::IDENTITY, flip_normals: i % 2 == 0 };
+        let geometry =
+            Geometry::build(GeometryInput { shapes: vec![Shape::Sphere(sphere)], ..Default::default() })
+                .unwrap();
+        let mut ray = Ray::new(center, random.direction());
+        for _ in 0..500 {
+            let hit = geometry.intersect(&ray).expect("a ray from inside hits");
+            let surface = geometry.surface(&ray, &hit);
+            let out = (surface.p - center).normalize();
+            let direction = random.direction();
+            let leaving = surface.spawn_ray(if direction.dot(out) > 0.0 { direction } else { -direction });
+            assert_eq!(geometry.intersect(&leaving), None, "radius {radius}, {leaving:?}");
+            ray = surface.spawn_ray(if direction.dot(out) > 0.0 { -direction } else { direction });
+            assert!(geometry.occluded(&ray), "radius {radius}, {ray:?}");
+        }
+    }
+}
+
+#[test]
+fn disks() {
+    let mut random = Random(24);
+    for i in 0..100 {
+        let size = 10f32.powi(i % 9 - 4);
+        let turn = Quat::from_axis_angle(random.direction(), random.unit());
+        let disk = Disk {
+            center: 10.0 * size * random.cube(),
+            u_axis: size * (turn * Vec3::X),
+            v_axis: 0.5 * size * (turn * Vec3::Y),
+            flip_normals: i % 2 == 0,
+        };
+        let geometry =
+            Geometry::build(GeometryInput { shapes: vec![Shape::Disk(disk)], ..Default::default() }).unwrap();
+        for _ in 0..100 {
+            let origin = disk.center + size * 3.0 * random.direction();
+            let target =
+                disk.center + disk.u_axis * (random.unit() - 0.5) + disk.v_axis * (random.unit() - 0.5);
+            let ray = Ray::new(origin, target - origin);
+            let hit = geometry.intersect(&ray).expect("aimed at the disk");
+            let surface = geometry.surface(&ray, &hit);
+            assert_eq!(geometry.intersect(&surface.spawn_ray(random.direction())), None);
+        }
+    }
+}
+
+#[test]
+fn a_ray_to_a_point_stops_before_it_but_sees_what_hides_it() {
+    let mut random = Random(25);
+    let mut mesh = OwnedMesh::default();
+    for z in [0.0, 0.5, 1.0] {
+        let corner = |x: f32, y: f32| Vec3::new(3.0 * x, 3.0 * y, z);
+        mesh.push([corner(-1.0, -1.0), corner(1.0, -1.0), corner(0.0, 1.0)]);
+    }
+    let geometry = mesh.build();
+    for _ in 0..1000 {
+        let from = |geometry: &Geometry, z: f32, random: &mut Random| {
+            let ray = Ray::new(0.3 * random.cube().with_z(0.0) + Vec3::Z * (z + 0.1), Vec3::NEG_Z);
+            let hit = geometry.intersect(&ray).unwrap();
+            assert_eq!(hit.instance, NO_INSTANCE);
+            geometry.surface(&ray, &hit)
+        };
+        let (low, middle, high) = (
+            from(&geometry, 0.0, &mut random),
+            from(&geometry, 0.5, &mut random),
+            from(&geometry, 1.0, &mut random),
+        );
+        assert!(!geometry.occluded(&low.spawn_ray_to(middle.p)));
+        assert!(!geometry.occluded(&high.spawn_ray_to(middle.p)));
+        assert!(geometry.occluded(&low.spawn_ray_to(high.p)));
+    }
+}
