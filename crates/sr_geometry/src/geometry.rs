@@ -210,9 +210,9 @@ impl Geometry {
             Other::Instance(instance) => {
                 let placed = &self.instances[instance as usize];
                 let tree = &self.groups[placed.group as usize];
-                let hit = self
-                    .bvh
-                    .intersect(tree, &placed.to_group(ray), |other, ray| self.intersect_other(other, ray));
+                let hit = self.bvh.intersect(tree, &placed.ray_in_group(ray), |other, ray| {
+                    self.intersect_other(other, ray)
+                });
                 hit.map(|hit| Hit { instance, ..hit })
             }
         }

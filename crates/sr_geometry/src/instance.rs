@@ -36,7 +36,7 @@ impl PlacedGroup {
     }
 
     /// The same ray, with the same t, in the group's space.
-    pub fn to_group(&self, ray: &Ray) -> Ray {
+    pub fn ray_in_group(&self, ray: &Ray) -> Ray {
         Ray {
             origin: self.group_from_world.transform_point3(ray.origin.as_dvec3()).as_vec3(),
             direction: self.group_from_world.transform_vector3(ray.direction.as_dvec3()).as_vec3(),
@@ -45,7 +45,7 @@ impl PlacedGroup {
     }
 
     /// Normals stay on the side of the surface on which they were, also where the placement mirrors.
-    pub fn surface_to_world(&self, surface: &Surface) -> Surface {
+    pub fn surface_in_world(&self, surface: &Surface) -> Surface {
         let p = self.world_from_group.transform_point3(surface.p.as_dvec3()).as_vec3();
         let matrix = self.world_from_group.matrix3;
         let magnitude = |v: Vec3| -> Vec3 {
@@ -64,13 +64,13 @@ impl PlacedGroup {
         }
     }
 
-    pub fn tangents_to_world(&self, tangents: &Tangents) -> Tangents {
+    pub fn tangents_in_world(&self, tangents: &Tangents) -> Tangents {
         let vector = |v: Vec3| self.world_from_group.transform_vector3(v.as_dvec3()).as_vec3();
         Tangents { dpdu: vector(tangents.dpdu), dpdv: vector(tangents.dpdv) }
     }
 
     /// A world-space point in the group's space.
-    pub fn point_to_group(&self, p: Vec3) -> Vec3 {
+    pub fn point_in_group(&self, p: Vec3) -> Vec3 {
         self.group_from_world.transform_point3(p.as_dvec3()).as_vec3()
     }
 }

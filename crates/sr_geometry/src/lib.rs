@@ -29,5 +29,5 @@ pub use bounds::Bounds3;
 pub use geometry::{Geometry, ShapeRef};
 pub use offset::offset_ray_origin;
 pub use ray::{Hit, NO_INSTANCE, Ray, ShapeId};
-pub use shape::{Disk, GeometryError, GeometryInput, Instance, Shape, Sphere, TriangleMesh};
+pub use shape::{Disk, GeometryError, GeometryInput, Instance, MeshError, Shape, Sphere, TriangleMesh};
 pub use surface::{Surface, Tangents};

@@ -75,76 +75,145 @@ pub struct GeometryInput<'a> {
     pub instances: Vec<Instance>,
 }
 
-/// What is wrong with a [`GeometryInput`]. Shapes are counted as [`crate::ShapeId`] counts them.
+/// What is wrong with a [`GeometryInput`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(missing_docs, reason = "the messages say what the fields are")]
 pub enum GeometryError {
-    #[error("shape {shape}: vertex {vertex} is {value}, which is not finite")]
-    NonFiniteVertex { shape: u32, vertex: usize, value: Vec3 },
-    #[error("shape {shape}: {what} {vertex} is not finite")]
-    NonFiniteAttribute { shape: u32, what: &'static str, vertex: usize },
-    #[error("shape {shape}: triangle {triangle} uses vertex {index}, but there are only {vertices}")]
-    VertexOutOfRange { shape: u32, triangle: usize, index: u32, vertices: usize },
-    #[error("shape {shape}: {count} {what} for {vertices} vertices; expected none or as many")]
-    AttributeCount { shape: u32, what: &'static str, count: usize, vertices: usize },
+    /// A mesh's arrays do not fit together, or hold what is not finite.
+    #[error("shape {shape}: {error}")]
+    Mesh {
+        /// Which, as [`crate::ShapeId`] counts.
+        shape: u32,
+        /// Why.
+        error: MeshError,
+    },
+    /// A sphere without a positive radius, or not finite.
     #[error(
         "shape {shape}: a sphere of radius {radius} at {center}; expected a positive radius and finite numbers"
     )]
-    BadSphere { shape: u32, center: Vec3, radius: f32 },
+    Sphere {
+        /// Which, as [`crate::ShapeId`] counts.
+        shape: u32,
+        /// Its centre.
+        center: Vec3,
+        /// Its radius.
+        radius: f32,
+    },
+    /// A disk whose half-axes are zero, not perpendicular, or not finite.
     #[error(
         "shape {shape}: a disk with half-axes {u_axis} and {v_axis}; expected finite and perpendicular ones"
     )]
-    BadDisk { shape: u32, u_axis: Vec3, v_axis: Vec3 },
+    Disk {
+        /// Which, as [`crate::ShapeId`] counts.
+        shape: u32,
+        /// Its first half-axis.
+        u_axis: Vec3,
+        /// Its second half-axis.
+        v_axis: Vec3,
+    },
+    /// An instance of a group that is not there.
     #[error("instance {instance} places group {group}, but there are only {groups}")]
-    GroupOutOfRange { instance: usize, group: u32, groups: usize },
+    GroupOutOfRange {
+        /// Which instance.
+        instance: usize,
+        /// The group it asks for.
+        group: u32,
+        /// Number of groups.
+        groups: usize,
+    },
+    /// An instance that flattens its group, or is not finite.
     #[error("instance {instance}: its transform cannot be inverted")]
-    SingularInstance { instance: usize },
+    SingularInstance {
+        /// Which instance.
+        instance: usize,
+    },
+    /// More of something than indices of 32 bits can tell apart.
     #[error("{count} {what}; at most {limit} are supported")]
-    TooMany { what: &'static str, count: usize, limit: usize },
+    TooMany {
+        /// Of what.
+        what: &'static str,
+        /// How many.
+        count: usize,
+        /// How many may be.
+        limit: usize,
+    },
+}
+
+/// What is wrong with a [`TriangleMesh`].
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MeshError {
+    /// A NaN or an infinity.
+    #[error("{what} {vertex} is not finite")]
+    NotFinite {
+        /// In which array.
+        what: &'static str,
+        /// Where in it.
+        vertex: usize,
+    },
+    /// A per-vertex array that is neither empty nor as long as the positions.
+    #[error("{count} {what}s for {vertices} vertices; expected none or as many")]
+    Count {
+        /// Which array.
+        what: &'static str,
+        /// Its length.
+        count: usize,
+        /// Number of positions.
+        vertices: usize,
+    },
+    /// A triangle of a vertex that is not there.
+    #[error("triangle {triangle} uses vertex {index}, but there are only {vertices}")]
+    VertexOutOfRange {
+        /// Which triangle.
+        triangle: usize,
+        /// The vertex it asks for.
+        index: u32,
+        /// Number of positions.
+        vertices: usize,
+    },
 }
 
 impl Shape<'_> {
     /// Checks everything that later code relies on; `shape` is the number used in messages.
     pub(crate) fn validate(&self, shape: u32) -> Result<(), GeometryError> {
         match self {
-            Shape::Mesh(mesh) => mesh.validate(shape),
+            Shape::Mesh(mesh) => mesh.validate().map_err(|error| GeometryError::Mesh { shape, error }),
             Shape::Sphere(s) => {
                 let frame = s.frame.to_cols_array();
                 let finite =
                     s.center.is_finite() && s.radius.is_finite() && frame.iter().all(|x| x.is_finite());
                 let ok = finite && s.radius > 0.0;
-                ok.then_some(()).ok_or(GeometryError::BadSphere { shape, center: s.center, radius: s.radius })
+                ok.then_some(()).ok_or(GeometryError::Sphere { shape, center: s.center, radius: s.radius })
             }
             Shape::Disk(d) => {
                 let (u, v) = (d.u_axis.length(), d.v_axis.length());
                 let finite = d.center.is_finite() && u.is_finite() && v.is_finite();
                 let ok = finite && u > 0.0 && v > 0.0 && d.u_axis.dot(d.v_axis).abs() <= 1e-3 * u * v;
-                ok.then_some(()).ok_or(GeometryError::BadDisk { shape, u_axis: d.u_axis, v_axis: d.v_axis })
+                ok.then_some(()).ok_or(GeometryError::Disk { shape, u_axis: d.u_axis, v_axis: d.v_axis })
             }
         }
     }
 }
 
 impl TriangleMesh<'_> {
-    fn validate(&self, shape: u32) -> Result<(), GeometryError> {
+    fn validate(&self) -> Result<(), MeshError> {
         let vertices = self.positions.len();
-        if let Some((vertex, &value)) = self.positions.iter().enumerate().find(|(_, p)| !p.is_finite()) {
-            return Err(GeometryError::NonFiniteVertex { shape, vertex, value });
-        }
-        for (what, count) in [("normals", self.normals.len()), ("texture coordinates", self.uvs.len())] {
+        for (what, count) in [("normal", self.normals.len()), ("texture coordinate", self.uvs.len())] {
             if count != 0 && count != vertices {
-                return Err(GeometryError::AttributeCount { shape, what, count, vertices });
+                return Err(MeshError::Count { what, count, vertices });
             }
         }
-        if let Some(vertex) = self.normals.iter().position(|n| !n.is_finite()) {
-            return Err(GeometryError::NonFiniteAttribute { shape, what: "normal", vertex });
-        }
-        if let Some(vertex) = self.uvs.iter().position(|uv| !uv.is_finite()) {
-            return Err(GeometryError::NonFiniteAttribute { shape, what: "texture coordinate", vertex });
+        let not_finite = [
+            ("vertex", self.positions.iter().position(|p| !p.is_finite())),
+            ("normal", self.normals.iter().position(|n| !n.is_finite())),
+            ("texture coordinate", self.uvs.iter().position(|uv| !uv.is_finite())),
+        ];
+        for (what, found) in not_finite {
+            if let Some(vertex) = found {
+                return Err(MeshError::NotFinite { what, vertex });
+            }
         }
         for (triangle, indices) in self.triangles.iter().enumerate() {
             if let Some(&index) = indices.iter().find(|&&i| i as usize >= vertices) {
-                return Err(GeometryError::VertexOutOfRange { shape, triangle, index, vertices });
+                return Err(MeshError::VertexOutOfRange { triangle, index, vertices });
             }
         }
         Ok(())

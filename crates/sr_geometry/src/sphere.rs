@@ -17,7 +17,7 @@ impl Sphere {
         // The discriminant from the ray's distance to the centre does not cancel (Hearn & Baker 2004).
         let closest = to_origin - half_b / a * direction;
         let root = a * (radius * radius - closest.length_squared());
-        if !(root >= 0.0) {
+        if root.is_nan() || root < 0.0 {
             return None;
         }
         let q = -half_b - root.sqrt().copysign(half_b);

@@ -55,7 +55,7 @@ impl Geometry {
         let Some(instance) = self.placed(hit.instance) else {
             return self.surface_in_group(ray, hit);
         };
-        instance.surface_to_world(&self.surface_in_group(&instance.to_group(ray), hit))
+        instance.surface_in_world(&self.surface_in_group(&instance.ray_in_group(ray), hit))
     }
 
     #[inline]
@@ -95,11 +95,11 @@ impl Geometry {
         let local = match self.shape_of(hit.shape) {
             ShapeRef::Mesh => self.tangents_of_triangle(hit.shape, hit.primitive),
             ShapeRef::Sphere(sphere) => {
-                sphere.tangents(instance.map_or(surface.p, |instance| instance.point_to_group(surface.p)))
+                sphere.tangents(instance.map_or(surface.p, |instance| instance.point_in_group(surface.p)))
             }
             ShapeRef::Disk(disk) => disk.tangents(Vec2::new(hit.b1, hit.b2)),
         };
-        instance.map_or(local, |instance| instance.tangents_to_world(&local))
+        instance.map_or(local, |instance| instance.tangents_in_world(&local))
     }
 
     fn tangents_of_triangle(&self, shape: ShapeId, triangle: u32) -> Tangents {

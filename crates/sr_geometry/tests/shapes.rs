@@ -92,6 +92,37 @@ fn a_disk_has_a_rim_and_two_sides() {
     assert_eq!(flipped.surface(&ray, &flipped.intersect(&ray).unwrap()).ng, Vec3::NEG_Z);
 }
 
+/// Figures printed by Mitsuba 3.9.1 (`Scene.ray_intersect`, `scalar_rgb`) for the same shapes and rays.
+#[test]
+fn conventions_agree_with_mitsuba() {
+    let near = |a: Vec3, b: [f32; 3]| assert!(a.distance(b.into()) < 1e-4, "{a} {b:?}");
+    let sphere =
+        Sphere { center: Vec3::new(1.0, 2.0, 3.0), radius: 2.0, frame: Mat3::IDENTITY, flip_normals: false };
+    let inside = Ray::new(Vec3::new(1.3, 1.1, 3.0), Vec3::new(0.0, 0.1, -1.0));
+    let disk = Disk { center: Vec3::ZERO, u_axis: 2.0 * Vec3::X, v_axis: Vec3::Y, flip_normals: false };
+    let down = Ray::new(Vec3::new(0.6, -0.4, 3.0), Vec3::NEG_Z);
+
+    let geometry = build(vec![Shape::Sphere(sphere)]);
+    let hit = geometry.intersect(&inside).unwrap();
+    let surface = geometry.surface(&inside, &hit);
+    let tangents = geometry.tangents(&surface, &hit);
+    assert!((hit.t - 1.843_317_4).abs() < 1e-5);
+    near(surface.p, [1.3, 1.28433, 1.15668]);
+    near(surface.ng, [0.15, -0.357834, -0.921659]);
+    near(surface.uv.extend(0.0), [0.813175, 0.873165, 0.0]);
+    near(tangents.dpdu, [4.49668, 1.88496, 0.0]);
+    near(tangents.dpdv, [-2.23876, 5.3407, -2.43789]);
+
+    let geometry = build(vec![Shape::Disk(disk)]);
+    let hit = geometry.intersect(&down).unwrap();
+    let surface = geometry.surface(&down, &hit);
+    let tangents = geometry.tangents(&surface, &hit);
+    near(surface.ng, [0.0, 0.0, 1.0]);
+    near(surface.uv.extend(0.0), [0.5, 0.852416, 0.0]);
+    near(tangents.dpdu, [1.2, -0.8, 0.0]);
+    near(tangents.dpdv, [5.02655, 1.88496, 0.0]);
+}
+
 #[test]
 fn instances_are_transformed_copies() {
     let mut random = Random(42);

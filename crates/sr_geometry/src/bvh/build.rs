@@ -29,15 +29,9 @@ pub(super) struct BuiltTree {
 impl BuiltTree {
     /// Makes its references those after `nodes` and `blocks` earlier ones.
     pub fn shift(&mut self, nodes: usize, blocks: usize) {
-        let shift = |child: NodeRef| match child {
-            NodeRef::NONE => child,
-            child if child.is_node() => NodeRef::node(child.index() + nodes),
-            child if child.is_block() => NodeRef::block(child.index() + blocks),
-            child => child,
-        };
-        self.root = shift(self.root);
-        for node in &mut self.nodes {
-            node.children = node.children.map(shift);
+        let children = self.nodes.iter_mut().flat_map(|node| &mut node.children);
+        for child in children.chain([&mut self.root]) {
+            *child = child.shifted(nodes, blocks);
         }
     }
 

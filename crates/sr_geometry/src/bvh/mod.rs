@@ -27,6 +27,9 @@ pub(crate) const WIDTH: usize = 8;
 /// The largest number of nodes, of blocks or of other primitives that a [`NodeRef`] can tell apart.
 pub(crate) const MAX_INDEX: usize = (1 << 30) - 1;
 
+/// Bytes of nodes and blocks from which traversal prefetches: what a second-level cache surely does not hold.
+const PREFETCH_FROM: usize = 1 << 20;
+
 /// What the builder sees of a primitive.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PrimRef {
@@ -67,6 +70,17 @@ impl NodeRef {
 
     fn other(index: u32) -> Self {
         Self(index | Self::OTHER)
+    }
+
+    /// The same child where `nodes` and `blocks` precede its own.
+    fn shifted(self, nodes: usize, blocks: usize) -> Self {
+        if self.is_node() {
+            Self::node(self.index() + nodes)
+        } else if self.is_block() {
+            Self::block(self.index() + blocks)
+        } else {
+            self
+        }
     }
 
     #[inline(always)]
@@ -155,11 +169,13 @@ pub(crate) struct Bvh {
     nodes: Vec<Node>,
     blocks: Vec<TriangleBlock>,
     kernel: Kernel,
+    /// Is the tree so large that memory is worth asking for ahead of need?
+    prefetches: bool,
 }
 
 impl Bvh {
     pub fn new() -> Self {
-        Self { nodes: Vec::new(), blocks: Vec::new(), kernel: Kernel::detect() }
+        Self { nodes: Vec::new(), blocks: Vec::new(), kernel: Kernel::detect(), prefetches: false }
     }
 
     /// Builds a tree over `prims`, which it reorders. `vertices_of` fetches a triangle's vertices.
@@ -177,6 +193,7 @@ impl Bvh {
         let blocks =
             tree.leaves.par_iter().map(|leaf| TriangleBlock::new(&prims[leaf.clone()], &vertices_of));
         self.blocks.par_extend(blocks);
+        self.prefetches = self.memory_bytes() > PREFETCH_FROM;
         Tree { root: tree.root, bounds }
     }
 

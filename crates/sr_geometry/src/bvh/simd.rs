@@ -25,6 +25,8 @@ pub(super) trait Simd: Copy {
     /// What orders the lanes by `x` ≥ 0: the bits of x[i] with the lowest three replaced by i.
     /// `u32::MAX` for lanes where not x[i] ≤ `limit`[i].
     fn keys(self, x: Self::F, limit: Self::F) -> Self::Keys;
+    /// The smallest key.
+    fn least(self, keys: Self::Keys) -> u32;
     /// Removes and returns the smallest key, leaving `u32::MAX` in its lane.
     fn take_least(self, keys: &mut Self::Keys) -> u32;
     /// Bit i: a[i] < b[i]; false where either is NaN.
@@ -95,8 +97,12 @@ impl Simd for Portable {
         lanes(|i| if x[i] <= limit[i] { x[i].to_bits() & !LANE | i as u32 } else { u32::MAX })
     }
     #[inline(always)]
+    fn least(self, keys: Self::Keys) -> u32 {
+        keys.iter().fold(u32::MAX, |least, &key| least.min(key))
+    }
+    #[inline(always)]
     fn take_least(self, keys: &mut Self::Keys) -> u32 {
-        let least = keys.iter().fold(u32::MAX, |least, &key| least.min(key));
+        let least = self.least(*keys);
         *keys = lanes(|i| if keys[i] == least { u32::MAX } else { keys[i] });
         least
     }
@@ -133,6 +139,18 @@ mod avx2 {
             // SAFETY: an `Avx2` exists only where AVX2 was detected, and loads and stores are through references.
             unsafe { $call }
         };
+    }
+
+    impl Avx2 {
+        /// The smallest key, in every lane.
+        #[inline(always)]
+        fn broadcast_least(self, keys: __m256i) -> __m256i {
+            avx2!({
+                let least = _mm256_min_epu32(keys, _mm256_permute2x128_si256::<0x01>(keys, keys));
+                let least = _mm256_min_epu32(least, _mm256_shuffle_epi32::<0b01_00_11_10>(least));
+                _mm256_min_epu32(least, _mm256_shuffle_epi32::<0b10_11_00_01>(least))
+            })
+        }
     }
 
     impl Simd for Avx2 {
@@ -195,12 +213,13 @@ mod avx2 {
             })
         }
         #[inline(always)]
+        fn least(self, keys: Self::Keys) -> u32 {
+            avx2!(_mm256_cvtsi256_si32(self.broadcast_least(keys)) as u32)
+        }
+        #[inline(always)]
         fn take_least(self, keys: &mut Self::Keys) -> u32 {
+            let (all, least) = (*keys, self.broadcast_least(*keys));
             avx2!({
-                let all = *keys;
-                let least = _mm256_min_epu32(all, _mm256_permute2x128_si256::<0x01>(all, all));
-                let least = _mm256_min_epu32(least, _mm256_shuffle_epi32::<0b01_00_11_10>(least));
-                let least = _mm256_min_epu32(least, _mm256_shuffle_epi32::<0b10_11_00_01>(least));
                 *keys = _mm256_or_si256(all, _mm256_cmpeq_epi32(all, least));
                 _mm256_cvtsi256_si32(least) as u32
             })

@@ -188,6 +188,10 @@ fn walk<S: Simd, const ANY: bool>(
             let key = simd.take_least(&mut waiting.keys);
             // Distances are not negative, so their bits are in the order of their values.
             if key & !LANE <= ray.t_max.to_bits() {
+                if bvh.prefetches {
+                    let next = simd.least(waiting.keys);
+                    bvh.prefetch(simd, waiting.children[(next & LANE) as usize]);
+                }
                 break waiting.children[(key & LANE) as usize];
             }
             depth -= 1;
@@ -220,6 +224,14 @@ fn meet_block<S: Simd>(simd: S, ray: &Prepared<S>, block: &TriangleBlock, t_max:
 }
 
 impl Bvh {
+    /// Asks for the cache lines of a child that comes next unless a hit hides it. Any reference will do.
+    #[inline(always)]
+    fn prefetch<S: Simd>(&self, simd: S, child: NodeRef) {
+        let node = self.nodes.as_ptr().wrapping_add(child.index()).cast::<u8>();
+        let block = self.blocks.as_ptr().wrapping_add(child.index()).cast::<u8>();
+        simd.prefetch::<TriangleBlock>(if child.is_node() { node } else { block }.cast());
+    }
+
     /// The closest hit. `meet_other(i, ray)` answers for the primitives that are not triangles.
     pub fn intersect(
         &self,
