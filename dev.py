@@ -4,7 +4,7 @@
     python3 dev.py render scenes/cornell-box.xml     build if need be, then: steradian render scenes/...
     python3 dev.py info scenes/cornell-box.xml       the same for any other steradian command
     python3 dev.py build                             build only
-    python3 dev.py test                              formatting, lints, documentation, all tests
+    python3 dev.py test                              formatting, lints, types, documentation, all tests
     python3 dev.py test -k merge                     only Python's tests, with these arguments for pytest
 
 Needs Rust (rustup.rs) and Python 3.11 or newer with pip; nothing else.
@@ -25,10 +25,20 @@ VENV = ROOT / ".venv"
 PYTHON = VENV / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
 STAMP = VENV / "steradian-built-from.txt"
 TOOLS_STAMP = VENV / "steradian-test-tools.txt"
-SOURCES = ("crates", "python", "Cargo.toml", "Cargo.lock", "pyproject.toml", "rust-toolchain.toml", "README.md")
+SOURCES = (
+    "crates",
+    "python",
+    "Cargo.toml",
+    "Cargo.lock",
+    "pyproject.toml",
+    "rust-toolchain.toml",
+    "README.md",
+)
 OLDEST_PYTHON = (3, 11)
 # The last line of a test runner, such as "test result: ok. 12 passed" or "31 passed in 4.20s".
-CLOSING_LINE = re.compile(r"^test result: |^=*\s*\d+ (passed|failed|skipped|error).* in [\d.:]+s|^no tests ran")
+CLOSING_LINE = re.compile(
+    r"^test result: |^=*\s*\d+ (passed|failed|skipped|error).* in [\d.:]+s|^no tests ran"
+)
 
 
 def main(arguments):
@@ -54,13 +64,15 @@ def check_tools():
     """Ends with one sentence if something is missing that only the user can install."""
     if sys.version_info < OLDEST_PYTHON:
         found = "{}.{}".format(*sys.version_info)
-        sys.exit(f"dev.py needs Python 3.11 or newer, and this is {found}; run it with a newer one: python3.11 dev.py")
+        sys.exit(f"dev.py needs Python 3.11 or newer, and this is {found}; run it as: python3.11 dev.py")
     cargo_bin = Path.home() / ".cargo" / "bin"
     if shutil.which("cargo") is None:
         # rustup was installed in this very shell, which does not know it yet.
         os.environ["PATH"] += os.pathsep + str(cargo_bin)
     if shutil.which("cargo") is None:
-        sys.exit("dev.py needs Rust's cargo, which is not there; install it with rustup, see https://rustup.rs")
+        sys.exit(
+            "dev.py needs Rust's cargo, which is not there; install it with rustup, see https://rustup.rs"
+        )
 
 
 def test(pytest_arguments):
@@ -72,8 +84,11 @@ def test(pytest_arguments):
     for name, command, environment in checks:
         if not run_check(name, command, environment, closing_lines):
             failed.append(name)
-    build()
     install_test_tools()
+    for name, command in [] if pytest_arguments else python_checks():
+        if not run_check(name, command, {}, closing_lines):
+            failed.append(name)
+    build()
     if not run_check("pytest", [str(PYTHON), "-m", "pytest", "-q", *pytest_arguments], {}, closing_lines):
         failed.append("pytest")
     heading("closing lines")
@@ -101,6 +116,16 @@ def cargo_checks():
     ]
 
 
+def python_checks():
+    """(name, command) of what Python's tools check."""
+    tool = [str(PYTHON), "-m"]
+    return [
+        ("ruff format", [*tool, "ruff", "format", "--check", "."]),
+        ("ruff check", [*tool, "ruff", "check", "."]),
+        ("mypy", [*tool, "mypy"]),
+    ]
+
+
 def run_check(name, command, environment, closing_lines):
     """Runs a command, shows what it says, keeps its closing lines; did it succeed?"""
     heading(name)
@@ -117,7 +142,9 @@ def run_check(name, command, environment, closing_lines):
     for line in process.stdout:
         sys.stdout.write(line)
         sys.stdout.flush()
-        if CLOSING_LINE.search(line) and not line.startswith("test result: ok. 0 passed; 0 failed; 0 ignored"):
+        if CLOSING_LINE.search(line) and not line.startswith(
+            "test result: ok. 0 passed; 0 failed; 0 ignored"
+        ):
             closing_lines.append(f"{name}: {line.strip().strip('= ')}")
     succeeded = process.wait() == 0
     closing_lines.append(f"{name}: {'ok' if succeeded else 'FAILED'}, {time.monotonic() - start:.0f} s")
@@ -160,11 +187,9 @@ def make_venv():
         return
     command = [sys.executable, "-m", "venv", "--clear", str(VENV)]
     if importlib.util.find_spec("ensurepip") is None:
-        # Debian and its kin ship pip and venv's other half apart: this interpreter's pip serves .venv as well.
+        # Debian ships ensurepip apart: this interpreter's pip then serves .venv as well.
         if importlib.util.find_spec("pip") is None:
-            sys.exit(
-                "dev.py needs pip, which this Python lacks; install it (Debian, Ubuntu: apt install python3-venv)"
-            )
+            sys.exit("dev.py needs pip, which this Python lacks (Debian, Ubuntu: apt install python3-venv)")
         command.append("--without-pip")
     say("making .venv")
     run_quietly(command)
@@ -184,7 +209,11 @@ def source_hash():
         top = ROOT / name
         files = sorted(top.rglob("*")) if top.is_dir() else [top]
         for path in files:
-            if path.is_file() and path.suffix not in (".pyc", ".so", ".pyd") and "__pycache__" not in path.parts:
+            if (
+                path.is_file()
+                and path.suffix not in (".pyc", ".so", ".pyd")
+                and "__pycache__" not in path.parts
+            ):
                 digest.update(f"{path.relative_to(ROOT).as_posix()}\0".encode())
                 digest.update(hashlib.sha256(path.read_bytes()).digest())
     return digest.hexdigest()
@@ -193,7 +222,12 @@ def source_hash():
 def run_quietly(command):
     """Runs a command; shows what it said, and ends, only if it failed."""
     done = subprocess.run(
-        command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, encoding="utf-8", errors="replace"
+        command,
+        cwd=ROOT,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        encoding="utf-8",
+        errors="replace",
     )
     if done.returncode != 0:
         sys.stderr.write(done.stdout)

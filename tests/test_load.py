@@ -24,7 +24,9 @@ def test_defines_override_the_file_s_defaults(cornell_path):
 
 def test_warnings_are_python_warnings_and_diagnostics(tmp_path):
     file = tmp_path / "scene.xml"
-    file.write_text('<scene version="3.0.0">\n  <shape type="sphere"><float name="raduis" value="2"/></shape>\n</scene>')
+    file.write_text(
+        '<scene version="3.0.0">\n  <shape type="sphere"><float name="raduis" value="2"/></shape>\n</scene>'
+    )
     with pytest.warns(sr.SceneWarning) as caught:
         scene = sr.load(file)
     assert len(caught) == len(scene.diagnostics) > 0
@@ -43,7 +45,7 @@ def test_errors_show_the_place(tmp_path):
         sr.load(file)
     assert "gold" in str(caught.value)
     assert "scene.xml:2" in str(caught.value)
-    assert [d.severity for d in caught.value.diagnostics] == ["error"]
+    assert [d.severity for d in caught.value.diagnostics] == ["error", "warning"]
 
 
 def test_dictionaries_and_files_are_the_same_scene(tmp_path, lit_square):

@@ -30,7 +30,7 @@ def test_exr_has_every_layer_and_the_settings(result, tmp_path):
     path = tmp_path / "größe.exr"
     result.write(path)
     with OpenEXR.File(str(path), separate_channels=True) as file:
-        header, channels = file.header(), {n: c.pixels for n, c in file.channels().items()}
+        header, channels = dict(file.header()), {n: c.pixels for n, c in file.channels().items()}
     for prefix, names, array in [
         ("", "RGB", result.image),
         ("stderr.", "RGB", result.stderr),

@@ -162,7 +162,7 @@ def test_settings_that_make_no_sense_are_value_errors(cornell, settings, words):
 
 def test_a_film_beyond_memory_is_refused(cornell, monkeypatch):
     monkeypatch.setattr("steradian._memory.physical_bytes", lambda: 2**20)
-    with pytest.raises(MemoryError, match="64 x 64.*smaller size"):
+    with pytest.raises(MemoryError, match=r"64 x 64.*smaller size"):
         sr.render(cornell, size=(64, 64), spp=1)
 
 
@@ -172,7 +172,9 @@ def test_importing_is_fast_and_leaves_numpy_alone():
         "print('numpy' in sys.modules, time.perf_counter() - start)"
     )
     runs = [
-        subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
+        subprocess.run(
+            [sys.executable, "-c", code], capture_output=True, text=True, check=True
+        ).stdout.split()
         for _ in range(3)
     ]
     assert all(numpy == "False" for numpy, _ in runs)

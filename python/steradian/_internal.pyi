@@ -102,7 +102,11 @@ def check_format(path: str) -> None:
     """Raises ValueError unless the extension is that of a format."""
 
 def write_image(
-    path: str, image: Image, metadata_values: Sequence[tuple[str, str | int | float]], exposure: float, tone: str
+    path: str,
+    image: Image,
+    metadata_values: Sequence[tuple[str, str | int | float]],
+    exposure: float,
+    tone: str,
 ) -> None:
     """Writes the format that the name asks for, whole or not at all."""
 

@@ -22,17 +22,13 @@ def check_film(width: int, height: int) -> None:
 def physical_bytes() -> int | None:
     """The machine's memory in bytes; None if the system does not tell."""
     if sys.platform == "win32":
-        return _windows_bytes()
+        import ctypes
+
+        kilobytes = ctypes.c_ulonglong(0)
+        if ctypes.windll.kernel32.GetPhysicallyInstalledSystemMemory(ctypes.byref(kilobytes)):
+            return kilobytes.value * 1024
+        return None
     try:
         return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     except (ValueError, OSError):
         return None
-
-
-def _windows_bytes() -> int | None:
-    import ctypes
-
-    kilobytes = ctypes.c_ulonglong(0)
-    if ctypes.windll.kernel32.GetPhysicallyInstalledSystemMemory(ctypes.byref(kilobytes)):
-        return kilobytes.value * 1024
-    return None

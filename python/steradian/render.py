@@ -29,7 +29,7 @@ class Progress:
     seconds: float
     """Since sampling began."""
     mean_relative_error: float | None
-    """As :attr:`steradian.Result.mean_relative_error`, from the last time it was worked out; None at first."""
+    """As :attr:`steradian.Result.mean_relative_error`, from a moment ago; None at first."""
 
 
 def render(
@@ -61,7 +61,8 @@ def render(
         strategy: how directions are chosen, such as ``0.5 * sr.cosine + 0.5 * sr.light`` or its text;
             ``sr.mis(sr.bsdf, sr.light)`` unless given.
         sampler: ``"sobol"`` (Owen-scrambled) or ``"independent"``.
-        max_depth: longest path in edges: 1 emitters only, 2 direct light, -1 unbounded; the scene's unless given.
+        max_depth: longest path in edges: 1 emitters only, 2 direct light, -1 unbounded; the scene's
+            unless given.
         roulette_depth: edges before Russian roulette may end a path, -1 never; the scene's unless given.
         hide_emitters: do emitters seen directly stay black? The scene's unless given.
         size: (width, height) in pixels; the scene's unless given.

@@ -62,12 +62,12 @@ class Result:
 
     @cached_property
     def normal(self) -> NDArray[float32]:
-        """(height, width, 3): mean shading normal at the first hit, world space; (0, 0, 0) where nothing is hit."""
+        """(height, width, 3): mean shading normal at the first hit, world space; 0 where nothing is hit."""
         return self._image.normal()
 
     @cached_property
     def depth(self) -> NDArray[float32]:
-        """(height, width): mean distance from camera to first hit, scene units; infinite where nothing is hit."""
+        """(height, width): mean distance to the first hit, scene units; infinite where nothing is hit."""
         return self._image.depth()
 
     @cached_property
@@ -125,11 +125,11 @@ class Result:
         return paths / self.seconds if self.seconds > 0.0 else math.nan
 
     def write(self, path: str | os.PathLike[str], *, exposure: float = 0.0, tone: str = "srgb") -> None:
-        """Writes ``.exr`` (all layers, linear, settings in the header) or ``.png`` (8-bit sRGB, for looking at).
+        """Writes ``.exr`` (all layers, linear, settings in the header) or ``.png`` (8-bit sRGB).
 
         The file appears as a whole or not at all. ``exposure`` (in stops) and ``tone`` are for PNG only:
-        ``"srgb"`` clips at 1, ``"reinhard"`` is L / (1 + L) on luminance (Reinhard et al. 2002), ``"filmic"`` is
-        Narkowicz's fit of the ACES curve (2015).
+        ``"srgb"`` clips at 1, ``"reinhard"`` is L / (1 + L) on luminance (Reinhard et al. 2002),
+        ``"filmic"`` is Narkowicz's fit of the ACES curve (2015).
 
         Raises ValueError for another extension or tone, OSError if the file cannot be written.
         """

@@ -16,8 +16,8 @@ Vector = Sequence[float]
 class Transform:
     """An affine map of space, applied to column vectors.
 
-    ``Transform.translate((0, 1, 0)) @ Transform.scale(2)`` scales first. Every argument that is a placement in
-    a scene dictionary may be a Transform or a 4×4 array.
+    ``Transform.translate((0, 1, 0)) @ Transform.scale(2)`` scales first. A placement in a scene dictionary
+    may be a Transform or a 4×4 array.
     """
 
     __slots__ = ("matrix",)
@@ -79,14 +79,16 @@ class Transform:
 
     @staticmethod
     def look_at(origin: Vector, target: Vector, up: Vector = (0, 1, 0)) -> Transform:
-        """Places a camera at ``origin``, looking (along its +Z) at ``target``, with ``up`` upwards in the image."""
+        """Places a camera at ``origin``; its view, +Z, is towards ``target``; ``up`` is up in the image."""
         import numpy as np
 
         eye = np.array(_vector(origin, "origin"))
         forward = np.array(_vector(target, "target")) - eye
         left = np.cross(_vector(up, "up"), forward)
         if not (np.linalg.norm(forward) > 0 and np.linalg.norm(left) > 0):
-            raise ValueError("look_at needs a target away from the origin and an up that is not along the view")
+            raise ValueError(
+                "look_at needs a target away from the origin and an up that is not along the view"
+            )
         forward /= np.linalg.norm(forward)
         left /= np.linalg.norm(left)
         m = np.eye(4)

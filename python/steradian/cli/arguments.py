@@ -45,7 +45,7 @@ def parse(argv: Sequence[str] | None = None) -> argparse.Namespace:
     return parser.parse_args(argv)
 
 
-def _add_render(commands: argparse._SubParsersAction) -> None:
+def _add_render(commands: argparse._SubParsersAction[_Parser]) -> None:
     parser = commands.add_parser(
         "render",
         help="render a scene to image files",
@@ -94,7 +94,7 @@ def _add_render(commands: argparse._SubParsersAction) -> None:
     add("--json", action="store_true", help="print one JSON object on standard output instead of the summary")
 
 
-def _add_info(commands: argparse._SubParsersAction) -> None:
+def _add_info(commands: argparse._SubParsersAction[_Parser]) -> None:
     parser = commands.add_parser(
         "info",
         help="say what is in a scene",

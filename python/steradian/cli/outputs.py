@@ -16,7 +16,9 @@ def resolve(asked: Sequence[str] | None, scene: str) -> list[Path]:
 
     Raises ValueError or OSError for the first that cannot be written.
     """
-    paths = [Path(name) for name in asked] if asked else [Path(Path(scene).stem or "scene").with_suffix(".exr")]
+    paths = (
+        [Path(name) for name in asked] if asked else [Path(Path(scene).stem or "scene").with_suffix(".exr")]
+    )
     for path in paths:
         _check(path)
     return paths

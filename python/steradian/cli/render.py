@@ -22,7 +22,7 @@ def render(arguments: argparse.Namespace) -> int:
     scene = load(arguments)
     if scene is None:
         return FAILED
-    shown = not (arguments.quiet or arguments.json and not sys.stderr.isatty())
+    shown = not (arguments.quiet or (arguments.json and not sys.stderr.isatty()))
     with ProgressBar(arguments.time) if shown else nullcontext() as bar:
         result = steradian.render(
             scene,

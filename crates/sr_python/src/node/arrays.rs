@@ -29,7 +29,8 @@ fn numbers(value: &Bound<'_, PyAny>) -> Option<ArrayD<f64>> {
 /// A point, a vector or a placement.
 pub fn vector_or_transform(value: &Bound<'_, PyAny>) -> PyResult<Result<Value, String>> {
     let matrix = value.getattr_opt("matrix")?;
-    let array = numbers(matrix.as_ref().unwrap_or(value));
+    // NumPy makes a grid without axes of anything at all.
+    let array = numbers(matrix.as_ref().unwrap_or(value)).filter(|a| a.ndim() > 0);
     Ok(match array.as_ref().map(|a| (a.shape(), a)) {
         Some(([3], a)) => Ok(Value::Vector(DVec3::new(a[0], a[1], a[2]))),
         Some(([4, 4], a)) => {
