@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use rayon::prelude::*;
-use sr_scene::{Diagnostic, Geometry, Image, MeshDesc, Pixels, Span};
+use sr_scene::{Diagnostic, Geometry, Image, MeshDesc, Pixels, ShapeDesc, Span};
 
 use super::Lowering;
 use crate::files;
@@ -88,11 +88,13 @@ impl Lowering<'_, '_> {
         let pending = std::mem::take(&mut self.meshes);
         let files = read_files(&pending);
         let mut placed = place_all(&pending, &files);
+        let mut degenerate = Vec::new();
+        let mut bad_normals = Vec::new();
         for (mesh, result) in pending.iter().zip(placed.drain(..)) {
-            let name = source_name(&mesh.source);
             match result {
                 Ok((desc, report)) => {
-                    self.report_mesh(&name, report, &mesh.span);
+                    degenerate.extend((report.degenerate > 0).then_some((report.degenerate, mesh)));
+                    bad_normals.extend((report.bad_normals > 0).then_some((report.bad_normals, mesh)));
                     self.set_geometry(mesh.shape, Geometry::Mesh(desc));
                 }
                 Err(reason) => {
@@ -101,7 +103,10 @@ impl Lowering<'_, '_> {
                             self.file_error("mitsuba::bad-mesh", &mesh.span, "mesh", path, &reason)
                         }
                         MeshSource::Memory(_) => {
-                            let message = format!("the mesh \"{name}\" cannot be used: {reason}");
+                            let message = format!(
+                                "the mesh \"{}\" cannot be used: {reason}",
+                                source_name(&mesh.source)
+                            );
                             Diagnostic::error("mitsuba::bad-mesh", &mesh.span, message)
                         }
                     };
@@ -109,6 +114,27 @@ impl Lowering<'_, '_> {
                 }
             }
         }
+        self.report_meshes(
+            "mitsuba::degenerate-triangles",
+            &degenerate,
+            "triangles without area",
+            "they are left out",
+        );
+        self.report_meshes(
+            "mitsuba::bad-normals",
+            &bad_normals,
+            "normals without a direction",
+            "they are computed from the triangles",
+        );
+        self.drop_empty_shapes();
+    }
+
+    /// A shape all of whose triangles were dropped is nothing; an emitter of no area could not be sampled.
+    fn drop_empty_shapes(&mut self) {
+        let full =
+            |shape: &ShapeDesc| !matches!(&shape.geometry, Geometry::Mesh(mesh) if mesh.triangles.is_empty());
+        self.shapes.retain(full);
+        self.groups.iter_mut().for_each(|group| group.shapes.retain(full));
     }
 
     fn set_geometry(&mut self, slot: ShapeSlot, geometry: Geometry) {
@@ -118,28 +144,23 @@ impl Lowering<'_, '_> {
         }
     }
 
-    fn report_mesh(&mut self, name: &str, report: Report, span: &Span) {
-        let Report { degenerate, bad_normals } = report;
-        if degenerate > 0 {
-            let message = format!("{name} has {degenerate} {} without area", plural(degenerate, "triangle"));
-            self.d.push(
-                Diagnostic::warning("mitsuba::degenerate-triangles", span, message)
-                    .consequence("they are left out"),
-            );
-        }
-        if bad_normals > 0 {
-            let message =
-                format!("{name} has {bad_normals} {} without a direction", plural(bad_normals, "normal"));
-            self.d.push(
-                Diagnostic::warning("mitsuba::bad-normals", span, message)
-                    .consequence("they are computed from the triangles"),
-            );
-        }
+    /// One warning for all meshes together: exporters leave such triangles everywhere.
+    fn report_meshes(
+        &mut self,
+        code: &'static str,
+        noticed: &[(usize, &PendingMesh)],
+        what: &str,
+        consequence: &str,
+    ) {
+        let Some((first_count, first)) = noticed.first() else { return };
+        let total: usize = noticed.iter().map(|(count, _)| count).sum();
+        let name = source_name(&first.source);
+        let message = match noticed.len() {
+            1 => format!("{name} has {total} {what}"),
+            n => format!("{n} meshes have {total} {what}; the first is {name} with {first_count}"),
+        };
+        self.d.push(Diagnostic::warning(code, &first.span, message).consequence(consequence));
     }
-}
-
-fn plural(count: usize, what: &str) -> String {
-    if count == 1 { what.to_owned() } else { format!("{what}s") }
 }
 
 /// Every distinct file, read.

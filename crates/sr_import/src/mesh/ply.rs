@@ -207,7 +207,7 @@ mod tests {
     #[test]
     fn text_and_both_byte_orders_give_the_same_mesh() {
         let mut ascii = header("ascii", "x y z u v");
-        ascii.extend(b"0 0 .5 0 0\n1 0 .5 1 0\n1 1 .5 1 1\n0 1 .5 0 1\n4 0 1 2 3\n");
+        ascii.extend(b"0 0 0.5 0 0\n1 0 0.5 1 0\n1 1 0.5 1 1\n0 1 5e-1 0 1\n4 0 1 2 3\n");
         let mesh = parse(&ascii).unwrap();
         assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
         assert_eq!(mesh.positions[2], Vec3::new(1.0, 1.0, 0.5));

@@ -1,0 +1,77 @@
+//! Files that mean harm, or were cut: an answer, never a panic.
+
+use std::path::Path;
+
+use sr_import::{LoadOptions, load_str};
+
+fn load(text: &str) -> sr_scene::Diagnostics {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
+    let (scene, diagnostics) = load_str("hostile.xml", text, &folder, &LoadOptions::default());
+    assert_eq!(scene.is_none(), diagnostics.has_errors());
+    // Rendering has its own indexing into the text.
+    diagnostics.render(true);
+    diagnostics
+}
+
+fn valid() -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/every_kind.xml");
+    std::fs::read_to_string(path).unwrap()
+}
+
+#[test]
+fn every_truncation_is_one_error() {
+    let text = valid();
+    let end = text.trim_end().len();
+    for cut in (1..end).filter(|&at| text.is_char_boundary(at)) {
+        let diagnostics = load(&text[..cut]);
+        assert!(diagnostics.has_errors(), "cut at {cut}");
+        assert_eq!(diagnostics.list.len(), 1, "cut at {cut}:\n{}", diagnostics.render(false));
+    }
+}
+
+#[test]
+fn changed_characters_never_panic() {
+    let text = valid();
+    // A fixed linear congruential generator: the same mutations in every run.
+    let mut state = 12345u64;
+    let mut next = || {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (state >> 33) as usize
+    };
+    let replacements =
+        ["\"", "<", ">", "/", "-", "$", "9999999999", "nan", "", "é", "0", " ", "&", "type", "ref"];
+    for _ in 0..4000 {
+        let mut changed = text.clone();
+        for _ in 0..1 + next() % 3 {
+            let at = next() % changed.len();
+            if changed.is_char_boundary(at) && changed.is_char_boundary(at + 1) {
+                changed.replace_range(at..at + 1, replacements[next() % replacements.len()]);
+            }
+        }
+        load(&changed);
+    }
+}
+
+#[test]
+fn deep_nesting_and_entities_are_refused() {
+    let deep = |n: usize| {
+        format!(
+            "<scene version=\"3.0.0\">{}{}</scene>",
+            "<bsdf type=\"twosided\">".repeat(n),
+            "</bsdf>".repeat(n)
+        )
+    };
+    assert!(load(&deep(100)).list.iter().any(|d| d.code == "mitsuba::too-deep"));
+    assert!(load(&deep(200_000)).has_errors());
+    let bomb =
+        "<!DOCTYPE a [<!ENTITY b \"bbbb\"><!ENTITY c \"&b;&b;\">]><scene version=\"3.0.0\">&c;</scene>";
+    assert_eq!(load(bomb).list[0].code, "xml::dtd");
+}
+
+#[test]
+fn files_that_include_themselves_end() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
+    let (scene, diagnostics) = sr_import::load(&folder.join("ouroboros.xml"), &LoadOptions::default());
+    assert!(scene.is_none());
+    assert!(diagnostics.list.iter().any(|d| d.message.contains("includes itself")));
+}
