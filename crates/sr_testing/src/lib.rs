@@ -3,6 +3,8 @@
 pub mod bsdfs;
 pub mod distributions;
 pub mod lobe;
+pub mod scenes;
 
 pub use bsdfs::{BsdfCase, bsdf_cases, bsdf_models};
 pub use distributions::{DistributionCase, distribution_cases};
+pub use scenes::{KnownScene, known_scenes};

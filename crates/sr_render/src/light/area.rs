@@ -149,14 +149,10 @@ impl AreaLight {
         u: Vec2,
         textures: &Textures,
     ) -> Option<LightSample> {
-        let outside = (center - from).length_squared() > radius * radius;
-        if outside == inwards {
-            return None;
-        }
-        let (p, wi, pdf) = if outside {
-            sphere::sample_cone(center, radius, from, u)?
-        } else {
+        let (p, wi, pdf) = if inwards {
             sphere::sample_area(center, radius, from, u)?
+        } else {
+            sphere::sample_cone(center, radius, from, u)?
         };
         let radiance = textures.color(self.radiance, sphere::uv(frame, p - center));
         Some(LightSample { wi, radiance, pdf, target: Target::Point(p) })
@@ -191,10 +187,9 @@ mod sphere {
     use sr_sampling::Distribution;
     use sr_sampling::warp::{UniformCone, UniformSphere};
 
-    /// The cone of directions from `from`, outside, that meet the sphere.
+    /// The cone of directions from `from` that meet the sphere; `None` from inside.
     fn cone(center: Vec3, radius: f32, from: Vec3) -> Option<UniformCone> {
-        let sin2 = (radius * radius / (center - from).length_squared()).min(1.0);
-        UniformCone::from_sin2(sin2).ok()
+        UniformCone::from_sin2(radius * radius / (center - from).length_squared()).ok()
     }
 
     pub(super) fn cone_pdf(center: Vec3, radius: f32, from: Vec3) -> f32 {
@@ -218,7 +213,7 @@ mod sphere {
         Some((p, wi, s.pdf))
     }
 
-    /// A point of the whole sphere, for a viewer inside.
+    /// A point of the whole sphere whose inside is seen.
     pub(super) fn sample_area(center: Vec3, radius: f32, from: Vec3, u: Vec2) -> Option<(Vec3, Vec3, f32)> {
         let normal = UniformSphere.sample(u)?.value;
         let p = center + radius * normal;
@@ -226,7 +221,7 @@ mod sphere {
         let distance_squared = to_light.length_squared();
         let wi = to_light / distance_squared.sqrt();
         let pdf = to_solid_angle(1.0 / (4.0 * PI * radius * radius), distance_squared, normal.dot(wi));
-        pdf.is_finite().then_some((p, wi, pdf))
+        (normal.dot(wi) > 0.0 && pdf.is_finite()).then_some((p, wi, pdf))
     }
 
     /// (φ / 2π, θ / π) in the sphere's frame.
