@@ -20,6 +20,9 @@ pub struct KnownScene {
     pub desc: SceneDesc,
     /// The radiance of that pixel.
     pub radiance: Rgb,
+    /// Does `light` alone have a finite variance? Not where shining walls meet: sampled by area, they are
+    /// ever closer to the points of a corner.
+    pub light_alone_converges: bool,
 }
 
 /// A camera at `from` that sees nothing but the point `at`.
@@ -100,7 +103,7 @@ fn floor_under(
         .push(MaterialDesc::Diffuse { reflectance: ColorInput::Constant(Rgb::splat(albedo_of_lights)) });
     add(&mut desc);
     let radiance = f64::from(ALBEDO) / std::f64::consts::PI * irradiance;
-    KnownScene { name: name.into(), desc, radiance: Rgb::splat(radiance as f32) }
+    KnownScene { name: name.into(), desc, radiance: Rgb::splat(radiance as f32), light_alone_converges: true }
 }
 
 /// Irradiance at the origin, on a floor facing +Z, from a polygon of unit radiance: Lambert's formula,
@@ -129,7 +132,12 @@ fn furnace_sphere() -> KnownScene {
     let camera = camera_on_point(Vec3::new(0.1, 0.3, -0.2), Vec3::new(1.0, 2.0, 0.5));
     let mut desc = diffuse_scene(camera, 0.5);
     desc.shapes.push(shape(sphere(Vec3::ZERO, 2.0, true), Some(1.0)));
-    KnownScene { name: "furnace, sphere".into(), desc, radiance: Rgb::splat(2.0) }
+    KnownScene {
+        name: "furnace, sphere".into(),
+        desc,
+        radiance: Rgb::splat(2.0),
+        light_alone_converges: true,
+    }
 }
 
 /// The same inside a box, whose walls shine from many triangles.
@@ -147,7 +155,12 @@ fn furnace_box() -> KnownScene {
             desc.shapes.push(shape(polygon(&corners), Some(1.0)));
         }
     }
-    KnownScene { name: "furnace, box".into(), desc, radiance: Rgb::splat(1.0 / 0.7) }
+    KnownScene {
+        name: "furnace, box".into(),
+        desc,
+        radiance: Rgb::splat(1.0 / 0.7),
+        light_alone_converges: false,
+    }
 }
 
 /// A convex body of albedo 1 under a sky of radiance 1 cannot be told from the sky.
@@ -156,7 +169,12 @@ fn white_furnace() -> KnownScene {
     let mut desc = diffuse_scene(camera, 1.0);
     desc.shapes.push(shape(sphere(Vec3::ZERO, 1.0, false), None));
     desc.lights.push(LightDesc::Constant { radiance: Rgb::ONE, span: Span::default() });
-    KnownScene { name: "white furnace, sphere under a constant sky".into(), desc, radiance: Rgb::ONE }
+    KnownScene {
+        name: "white furnace, sphere under a constant sky".into(),
+        desc,
+        radiance: Rgb::ONE,
+        light_alone_converges: true,
+    }
 }
 
 fn polygons() -> Vec<KnownScene> {
