@@ -3,8 +3,8 @@
 //! In: Mitsuba XML (0.5, 0.6, 2.x and 3.x), or a tree of [`Node`]s that Python made of a dict. Out: a
 //! [`SceneDesc`] and [`Diagnostics`]. The description is there exactly if no diagnostic is an error.
 //!
-//! - [`xml`]: text to nodes: includes, references' names, `$parameters`. Decides no meaning.
-//! - [`lower`](from_node): nodes to the description: plugins, defaults, units. Knows no XML.
+//! - `xml`: text to nodes: includes, references' names, `$parameters`. Decides no meaning.
+//! - `lower`: nodes to the description: plugins, defaults, units. Knows no XML.
 //! - `mesh`, `images`: the files that scenes name, read in parallel, each once.
 //!
 //! Invariant: no input makes this crate panic, loop for ever or use memory without bound; and nothing a file

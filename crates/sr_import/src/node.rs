@@ -1,6 +1,6 @@
 //! The tree between a front end and the lowering: objects with typed properties, each with its place.
 //!
-//! In: XML ([`crate::xml`]) or a Python dict. Out: what [`crate::from_node`] reads. Names keep the spelling of
+//! In: XML or a Python dict. Out: what [`crate::from_node`] reads. Names keep the spelling of
 //! their source; both generations (`toWorld`, `to_world`) are understood when they are looked up.
 
 use std::sync::Arc;

@@ -279,7 +279,7 @@ impl Reader<'_> {
             "ref" => reference(&mut attributes, node, &span),
             "transform" => self.transform(source, element, &mut attributes, node, &span),
             "default" => self.default(&mut attributes),
-            "include" => self.include(&mut attributes, node, &span, depth),
+            "include" => self.include(&mut attributes, node, depth),
             "path" => self.path(&mut attributes, &span),
             "alias" => self.alias(&mut attributes, &span),
             _ => self.value(tag, &mut attributes, node, &span),
@@ -470,7 +470,6 @@ impl Reader<'_> {
         &mut self,
         attributes: &mut Attributes<'_, '_>,
         node: &mut Node,
-        span: &Span,
         depth: usize,
     ) -> Result<(), String> {
         let name = attributes.required("filename")?.to_owned();
@@ -501,7 +500,6 @@ impl Reader<'_> {
             self.element(source, root, node, depth + 1);
         }
         self.including.pop();
-        let _ = span;
         Ok(())
     }
 

@@ -122,6 +122,17 @@ fn bad_files_are_one_clear_error_each() {
 }
 
 #[test]
+fn shapes_without_area_are_left_out_unless_nothing_else_is_there() {
+    let flat = "<shape type=\"rectangle\"><transform name=\"to_world\"><scale x=\"0\"/></transform></shape>";
+    let (scene, d) = read(&format!("{flat}<shape type=\"sphere\"/>"));
+    assert_eq!(scene.unwrap().shapes.len(), 1);
+    assert_eq!(d.list[0].code, "mitsuba::degenerate-triangles");
+    let (scene, d) = read(flat);
+    assert!(scene.is_none());
+    assert!(d.list.iter().any(|d| d.code == "mitsuba::nothing-left"));
+}
+
+#[test]
 fn both_generations_agree() {
     let body = |width: &str, world: &str, ior: &str| {
         format!(

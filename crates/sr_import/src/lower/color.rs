@@ -117,7 +117,7 @@ impl<'a> Lowering<'a, '_> {
                 }
             }
             SpectrumValue::Blackbody { temperature, scale } => {
-                if !(*temperature > 0.0) {
+                if *temperature <= 0.0 || temperature.is_nan() {
                     let message =
                         format!("a black body of {temperature} K: the temperature has to be positive");
                     self.d.push(Diagnostic::error("mitsuba::bad-value", span, message));

@@ -84,7 +84,7 @@ impl Lowering<'_, '_> {
         out
     }
 
-    pub(super) fn load_meshes(&mut self) {
+    pub(super) fn load_meshes(&mut self, span: &Span) {
         let pending = std::mem::take(&mut self.meshes);
         let files = read_files(&pending);
         let mut placed = place_all(&pending, &files);
@@ -126,15 +126,22 @@ impl Lowering<'_, '_> {
             "normals without a direction",
             "they are computed from the triangles",
         );
-        self.drop_empty_shapes();
+        self.drop_empty_shapes(span);
     }
 
     /// A shape all of whose triangles were dropped is nothing; an emitter of no area could not be sampled.
-    fn drop_empty_shapes(&mut self) {
+    ///
+    /// Real scenes have such shapes among others, so that only a scene of nothing else is an error.
+    fn drop_empty_shapes(&mut self, span: &Span) {
         let full =
             |shape: &ShapeDesc| !matches!(&shape.geometry, Geometry::Mesh(mesh) if mesh.triangles.is_empty());
+        let before = self.shapes.len();
         self.shapes.retain(full);
         self.groups.iter_mut().for_each(|group| group.shapes.retain(full));
+        if before > 0 && self.shapes.is_empty() && self.instances.is_empty() && !self.d.has_errors() {
+            let message = "nothing is left of the scene: no triangle of its shapes has an area";
+            self.d.push(Diagnostic::error("mitsuba::nothing-left", span, message));
+        }
     }
 
     fn set_geometry(&mut self, slot: ShapeSlot, geometry: Geometry) {

@@ -211,7 +211,7 @@ impl<'a, 'd> Lowering<'a, 'd> {
     }
 
     fn finish(mut self, root: &Node) -> Option<SceneDesc> {
-        self.load_meshes();
+        self.load_meshes(&root.span);
         let images = self.load_images();
         let camera = match self.camera.take() {
             Some(camera) => camera,

@@ -57,7 +57,7 @@ impl<'a> Lowering<'a, '_> {
                 props.unsupported(&["line_width"], "there are no lines", self.d);
                 let color0 = self.constant_color(props, "color0", Rgb::splat(0.4), role);
                 let color1 = self.constant_color(props, "color1", Rgb::splat(0.2), role);
-                let to_uv = self.to_uv(props);
+                let to_uv = self.uv_transform(props);
                 self.add_texture(TextureDesc::Checkerboard { color0, color1, to_uv, span: node.span.clone() })
             }
             "uniform" | "constant" => self.color(props, "value", Rgb::ONE, role),
@@ -161,7 +161,7 @@ impl<'a> Lowering<'a, '_> {
                 );
             }
         }
-        let to_uv = self.to_uv(props);
+        let to_uv = self.uv_transform(props);
         let decode = if raw { Decode::Raw } else { Decode::Color };
         let Some(image) = self.image_of(props, decode) else { return ColorInput::Constant(STAND_IN) };
         self.add_texture(TextureDesc::Bitmap {
@@ -195,7 +195,7 @@ impl<'a> Lowering<'a, '_> {
     }
 
     /// `to_uv`, or the `uscale`, `vscale`, `uoffset`, `voffset` of old.
-    fn to_uv(&mut self, props: &mut Props<'a>) -> Affine2 {
+    fn uv_transform(&mut self, props: &mut Props<'a>) -> Affine2 {
         let mut old = |name| props.float(name, self.d);
         let scale = [old("uscale"), old("vscale")];
         let offset = [old("uoffset"), old("voffset")];

@@ -56,9 +56,6 @@ pub fn place(mesh: &MeshDesc, placement: &Placement) -> Result<(MeshDesc, Report
         .filter(|t| has_area(t.map(|i| out.positions[i as usize])))
         .collect();
     report.degenerate = mesh.triangles.len() - out.triangles.len();
-    if out.triangles.is_empty() && report.degenerate > 0 {
-        return Err(format!("none of its triangles has an area ({} were read)", report.degenerate));
-    }
     if placement.face_normals || placement.flat {
         // Flat shading needs no normals.
     } else if let Some(angle) = placement.max_smooth_angle {
