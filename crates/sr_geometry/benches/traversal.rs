@@ -1,6 +1,6 @@
 //! Rays per second: incoherent rays that leave surfaces, closest and any hit, by the number of triangles.
 //!
-//! `cargo bench -p sr_geometry`. "cornell" is a closed box with two blocks and a light, 36 triangles; the others are
+//! `cargo bench -p sr_geometry`. "cornell" is a closed box with two blocks and a light, 38 triangles; the others are
 //! as many triangles scattered in a cube, their edges a few times shorter than their distances.
 
 #[path = "../tests/common/mod.rs"]
@@ -46,7 +46,7 @@ fn scattered_mesh(count: usize) -> OwnedMesh {
 }
 
 fn scene(triangles: usize) -> Geometry {
-    if triangles == 36 { cornell() } else { scattered(triangles) }
+    if triangles == 38 { cornell() } else { scattered(triangles) }
 }
 
 /// Rays that leave surfaces in random directions, as the paths of a path tracer do.
@@ -69,7 +69,7 @@ fn leaving_rays(geometry: &Geometry) -> Vec<Ray> {
     rays
 }
 
-#[divan::bench(args = [36, 1_000, 100_000, 1_000_000])]
+#[divan::bench(args = [38, 1_000, 100_000, 1_000_000])]
 fn closest(bencher: Bencher<'_, '_>, triangles: usize) {
     let geometry = scene(triangles);
     let rays = leaving_rays(&geometry);
@@ -79,7 +79,7 @@ fn closest(bencher: Bencher<'_, '_>, triangles: usize) {
 }
 
 /// Shadow rays: towards points of a square below the top of the cube.
-#[divan::bench(args = [36, 1_000, 100_000, 1_000_000])]
+#[divan::bench(args = [38, 1_000, 100_000, 1_000_000])]
 fn any(bencher: Bencher<'_, '_>, triangles: usize) {
     let geometry = scene(triangles);
     let mut random = Random(5);
@@ -92,7 +92,7 @@ fn any(bencher: Bencher<'_, '_>, triangles: usize) {
 }
 
 /// From hit to position, normals, texture coordinates.
-#[divan::bench(args = [36, 1_000_000])]
+#[divan::bench(args = [38, 1_000_000])]
 fn surface(bencher: Bencher<'_, '_>, triangles: usize) {
     let geometry = scene(triangles);
     let rays = leaving_rays(&geometry);
@@ -103,7 +103,7 @@ fn surface(bencher: Bencher<'_, '_>, triangles: usize) {
         .bench(|| hits.iter().map(|(ray, hit)| geometry.surface(ray, hit).ns.x).sum::<f32>());
 }
 
-#[divan::bench(args = [36, 1_000, 100_000, 1_000_000], sample_count = 10)]
+#[divan::bench(args = [38, 1_000, 100_000, 1_000_000], sample_count = 10)]
 fn build(bencher: Bencher<'_, '_>, triangles: usize) {
     let mesh = scattered_mesh(triangles);
     bencher.counter(ItemsCount::new(triangles)).bench(|| mesh.build());

@@ -8,7 +8,7 @@
 
 use std::mem::MaybeUninit;
 
-use glam::Vec3;
+use glam::Vec3A;
 
 use super::simd::{Kernel, LANE, Portable, Simd};
 use super::{Bvh, MAX_DEPTH, Node, NodeRef, Tree, TriangleBlock, WIDTH};
@@ -44,31 +44,34 @@ impl<S: Simd> Prepared<S> {
     /// `None` for rays that cannot hit anything: not finite, or without a direction or an extent.
     #[inline(always)]
     fn new(simd: S, ray: &Ray, bounds: &Bounds3) -> Option<Self> {
-        let (origin, direction) = (ray.origin, ray.direction);
+        let (origin, direction) = (Vec3A::from(ray.origin), Vec3A::from(ray.direction));
         let length = direction.abs();
+        let longest = length.max_element();
         let sum = (origin.abs() + length).element_sum();
-        if !(sum < f32::INFINITY && length.max_element() > 0.0 && ray.t_max > 0.0) {
+        if !(sum < f32::INFINITY && longest > 0.0 && ray.t_max > 0.0) {
             return None;
         }
-        let last = match () {
-            () if length.x > length.y && length.x > length.z => 0,
-            () if length.y > length.z => 1,
-            () => 2,
-        };
-        let axes = AXES[last];
-        let scale = 1.0 / direction[axes[2]];
         let inverse = direction.recip();
-        let reach = (bounds.min - origin).abs().max((bounds.max - origin).abs()).max_element();
-        let error = Vec3::splat(SHEAR_SLACK * reach).copysign(inverse);
+        let negative = inverse.is_negative_bitmask() as usize;
+        let reach = (Vec3A::from(bounds.min) - origin).abs().max((Vec3A::from(bounds.max) - origin).abs());
+        let error = Vec3A::splat(SHEAR_SLACK * reach.max_element()).copysign(inverse);
+        let longest = length.cmpeq(Vec3A::splat(longest)).bitmask().trailing_zeros() as usize;
+        let axes = AXES[longest % 3];
+        let (from, along) = (ray.origin.to_array(), ray.direction.to_array());
+        let scale = inverse.to_array()[axes[2]];
         Some(Self {
-            near: [usize::from(inverse.x < 0.0), usize::from(inverse.y < 0.0), usize::from(inverse.z < 0.0)],
+            near: [negative & 1, negative >> 1 & 1, negative >> 2 & 1],
             origin_near: splat(simd, origin + error),
             origin_far: splat(simd, origin - error),
             inv_near: splat(simd, inverse),
             inv_far: splat(simd, inverse * FAR_SLACK),
             axes,
-            origin: splat(simd, Vec3::new(origin[axes[0]], origin[axes[1]], origin[axes[2]])),
-            shear: splat(simd, Vec3::new(direction[axes[0]] * scale, direction[axes[1]] * scale, scale)),
+            origin: [simd.splat(from[axes[0]]), simd.splat(from[axes[1]]), simd.splat(from[axes[2]])],
+            shear: [
+                simd.splat(along[axes[0]] * scale),
+                simd.splat(along[axes[1]] * scale),
+                simd.splat(scale),
+            ],
         })
     }
 
@@ -124,7 +127,7 @@ impl<S: Simd> Prepared<S> {
 // Functions rather than closures: only what is always inlined is compiled for the instruction set of the caller.
 
 #[inline(always)]
-fn splat<S: Simd>(simd: S, v: Vec3) -> [S::F; 3] {
+fn splat<S: Simd>(simd: S, v: Vec3A) -> [S::F; 3] {
     [simd.splat(v.x), simd.splat(v.y), simd.splat(v.z)]
 }
 
@@ -141,7 +144,7 @@ struct Waiting<'a, S: Simd> {
     children: &'a [NodeRef; WIDTH],
 }
 
-/// Walks `tree`. `ANY`: stops at the first hit, which need not be the closest.
+/// Walks `tree`; was anything hit? `ANY`: stops at the first hit, else writes the closest to `closest`.
 #[inline(always)]
 fn walk<S: Simd, const ANY: bool>(
     simd: S,
@@ -149,10 +152,11 @@ fn walk<S: Simd, const ANY: bool>(
     tree: &Tree,
     ray: &Ray,
     meet_other: impl Fn(u32, &Ray) -> Option<Hit>,
-) -> Option<Hit> {
-    let prepared = Prepared::new(simd, ray, &tree.bounds)?;
-    let mut ray = *ray;
-    let mut closest = None;
+    closest: &mut Hit,
+) -> bool {
+    let Some(prepared) = Prepared::new(simd, ray, &tree.bounds) else { return false };
+    let mut t_max = ray.t_max;
+    let mut any = false;
     // A node waits here only while the walk is below it.
     let mut stack = [const { MaybeUninit::<Waiting<'_, S>>::uninit() }; MAX_DEPTH];
     let mut depth = 0;
@@ -160,34 +164,36 @@ fn walk<S: Simd, const ANY: bool>(
     loop {
         if child.is_node() {
             let node = &bvh.nodes[child.index()];
-            let keys = prepared.meet_node(simd, node, simd.splat(ray.t_max));
+            let keys = prepared.meet_node(simd, node, simd.splat(t_max));
             stack[depth].write(Waiting { keys, children: &node.children });
             depth += 1;
-        } else {
-            let hit = if child.is_block() {
-                meet_block(simd, &prepared, &bvh.blocks[child.index()], ray.t_max)
-            } else if child != NodeRef::NONE {
-                meet_other(child.index() as u32, &ray)
-            } else {
-                None
-            };
-            if let Some(hit) = hit {
+        } else if child.is_block() {
+            let block = &bvh.blocks[child.index()];
+            if let Some((mask, at)) = prepared.meet_block(simd, block, t_max) {
                 if ANY {
-                    return Some(hit);
+                    return true;
                 }
-                ray.t_max = hit.t;
-                closest = Some(hit);
+                write_closest(simd, block, mask, at, closest);
+                (t_max, any) = (closest.t, true);
             }
+        } else if child != NodeRef::NONE
+            && let Some(hit) = meet_other(child.index() as u32, &Ray { t_max, ..*ray })
+        {
+            if ANY {
+                return true;
+            }
+            *closest = hit;
+            (t_max, any) = (hit.t, true);
         }
         child = loop {
             if depth == 0 {
-                return closest;
+                return any;
             }
             // SAFETY: every entry below `depth` was written when `depth` passed it.
             let waiting = unsafe { stack[depth - 1].assume_init_mut() };
             let key = simd.take_least(&mut waiting.keys);
             // Distances are not negative, so their bits are in the order of their values.
-            if key & !LANE <= ray.t_max.to_bits() {
+            if key & !LANE <= t_max.to_bits() {
                 if bvh.prefetches {
                     let next = simd.least(waiting.keys);
                     bvh.prefetch(simd, waiting.children[(next & LANE) as usize]);
@@ -199,11 +205,10 @@ fn walk<S: Simd, const ANY: bool>(
     }
 }
 
-/// The closest hit within a block.
+/// Writes the closest of a block's hits, those in `mask`, to `closest`.
 #[inline(always)]
-fn meet_block<S: Simd>(simd: S, ray: &Prepared<S>, block: &TriangleBlock, t_max: f32) -> Option<Hit> {
-    let (mut mask, [t, b1, b2]) = ray.meet_block(simd, block, t_max)?;
-    let t = simd.to_array(t);
+fn write_closest<S: Simd>(simd: S, block: &TriangleBlock, mut mask: u32, at: [S::F; 3], closest: &mut Hit) {
+    let t = simd.to_array(at[0]);
     let mut lane = mask.trailing_zeros() as usize % WIDTH;
     mask &= mask - 1;
     while mask != 0 {
@@ -213,14 +218,12 @@ fn meet_block<S: Simd>(simd: S, ray: &Prepared<S>, block: &TriangleBlock, t_max:
             lane = other;
         }
     }
-    Some(Hit {
-        t: t[lane],
-        b1: simd.to_array(b1)[lane],
-        b2: simd.to_array(b2)[lane],
-        shape: ShapeId(block.shape[lane]),
-        primitive: block.primitive[lane],
-        instance: NO_INSTANCE,
-    })
+    closest.t = t[lane];
+    closest.b1 = simd.to_array(at[1])[lane];
+    closest.b2 = simd.to_array(at[2])[lane];
+    closest.shape = ShapeId(block.shape[lane]);
+    closest.primitive = block.primitive[lane];
+    closest.instance = NO_INSTANCE;
 }
 
 impl Bvh {
@@ -233,27 +236,35 @@ impl Bvh {
     }
 
     /// The closest hit. `meet_other(i, ray)` answers for the primitives that are not triangles.
+    #[inline]
     pub fn intersect(
         &self,
         tree: &Tree,
         ray: &Ray,
         meet_other: impl Fn(u32, &Ray) -> Option<Hit>,
     ) -> Option<Hit> {
-        self.dispatch::<false>(tree, ray, meet_other)
+        let mut closest =
+            Hit { t: ray.t_max, b1: 0.0, b2: 0.0, shape: ShapeId(0), primitive: 0, instance: NO_INSTANCE };
+        self.walk::<false>(tree, ray, meet_other, &mut closest).then_some(closest)
     }
 
     /// Is there any hit?
+    #[inline]
     pub fn occluded(&self, tree: &Tree, ray: &Ray, meet_other: impl Fn(u32, &Ray) -> Option<Hit>) -> bool {
-        self.dispatch::<true>(tree, ray, meet_other).is_some()
+        let mut unused =
+            Hit { t: ray.t_max, b1: 0.0, b2: 0.0, shape: ShapeId(0), primitive: 0, instance: NO_INSTANCE };
+        self.walk::<true>(tree, ray, meet_other, &mut unused)
     }
 
+    /// [`walk`], compiled for the instruction set of this processor.
     #[inline(always)]
-    fn dispatch<const ANY: bool>(
+    fn walk<const ANY: bool>(
         &self,
         tree: &Tree,
         ray: &Ray,
         meet_other: impl Fn(u32, &Ray) -> Option<Hit>,
-    ) -> Option<Hit> {
+        closest: &mut Hit,
+    ) -> bool {
         match self.kernel {
             #[cfg(target_arch = "x86_64")]
             Kernel::Avx2(avx2) => {
@@ -264,13 +275,14 @@ impl Bvh {
                     tree: &Tree,
                     ray: &Ray,
                     meet_other: impl Fn(u32, &Ray) -> Option<Hit>,
-                ) -> Option<Hit> {
-                    walk::<_, ANY>(avx2, bvh, tree, ray, meet_other)
+                    closest: &mut Hit,
+                ) -> bool {
+                    walk::<_, ANY>(avx2, bvh, tree, ray, meet_other, closest)
                 }
                 // SAFETY: an `Avx2` is the proof that this processor has these features.
-                unsafe { walk_avx2::<ANY>(avx2, self, tree, ray, meet_other) }
+                unsafe { walk_avx2::<ANY>(avx2, self, tree, ray, meet_other, closest) }
             }
-            Kernel::Portable(Portable) => walk::<_, ANY>(Portable, self, tree, ray, meet_other),
+            Kernel::Portable(Portable) => walk::<_, ANY>(Portable, self, tree, ray, meet_other, closest),
         }
     }
 }
