@@ -112,7 +112,7 @@ def cargo_checks():
             ["cargo", "doc", "--workspace", "--no-deps", "--locked"],
             {**python, "RUSTDOCFLAGS": "-D warnings"},
         ),
-        ("cargo test", ["cargo", "test", "--workspace", "--locked"], python),
+        ("cargo test", ["cargo", "test", "--workspace", "--locked", "--no-fail-fast"], python),
     ]
 
 

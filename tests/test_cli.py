@@ -232,10 +232,16 @@ def test_command_lines_that_make_no_sense_exit_with_2(tmp_path, arguments, words
     assert_one_clear_error(run(*arguments, cwd=tmp_path, check=2), words)
 
 
+def heed_interrupts():
+    """Shells start background jobs with SIGINT ignored, and children inherit that."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 def start(*arguments, cwd):
     return subprocess.Popen(
         [sys.executable, "-m", "steradian", *map(str, arguments)],
         cwd=cwd,
+        preexec_fn=heed_interrupts,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
@@ -289,7 +295,12 @@ except KeyboardInterrupt:
     print("raised")
 """
     done = subprocess.run(
-        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, timeout=30
+        [sys.executable, "-c", code],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=30,
+        preexec_fn=heed_interrupts,
     )
     assert (done.stdout, done.stderr) == (output, "")
 
