@@ -179,8 +179,10 @@ impl Film {
             let right = self.blocks.remove(left + 1);
             let parent = &mut self.blocks[left];
             parent.len *= 2;
-            for (a, b) in parent.sums.iter_mut().flatten().zip(right.sums.iter().flatten()) {
-                *a += b;
+            for (pixel, other) in parent.sums.iter_mut().zip(&right.sums) {
+                for (a, b) in pixel.iter_mut().zip(other) {
+                    *a += b;
+                }
             }
             at = left;
         }

@@ -222,12 +222,15 @@ impl<'a, I: Integrator, Q: Sequence> Sampler<'a, I, Q> {
         let rejected = AtomicU64::new(0);
         sums.par_chunks_mut(PIXELS_PER_TASK).enumerate().for_each(|(task, pixels)| {
             let mut bad = 0;
+            let mut tree = PairwiseSum::new();
             for (i, pixel_sums) in pixels.iter_mut().enumerate() {
                 if cancel.load(Ordering::Relaxed) {
                     return;
                 }
                 let pixel = (task * PIXELS_PER_TASK + i) as u32;
-                bad += self.pixel(pixel, first, len, pixel_sums);
+                let (sums, rejected_here) = self.pixel(pixel, first, len, &mut tree);
+                *pixel_sums = sums;
+                bad += rejected_here;
             }
             rejected.fetch_add(bad, Ordering::Relaxed);
         });
@@ -235,11 +238,11 @@ impl<'a, I: Integrator, Q: Sequence> Sampler<'a, I, Q> {
     }
 
     /// One pixel of a pass: a pairwise sum over samples, in groups of one sample per replicate.
-    fn pixel(&self, pixel: u32, first: u32, len: u32, sums: &mut PixelSums) -> u64 {
+    /// Returns the sums, and how many samples were not finite.
+    fn pixel(&self, pixel: u32, first: u32, len: u32, tree: &mut PairwiseSum) -> (PixelSums, u64) {
         let window = self.window(pixel);
         let group = len.min(REPLICATES as u32);
         let mut rejected = 0;
-        let mut tree = PairwiseSum::new();
         for start in (first..first + len).step_by(group as usize) {
             let mut leaf = [0.0; SUMS];
             let mut aux = [[0.0; AUX]; REPLICATES];
@@ -260,8 +263,7 @@ impl<'a, I: Integrator, Q: Sequence> Sampler<'a, I, Q> {
             leaf[3 * REPLICATES..].copy_from_slice(&pairwise(&mut aux[..group as usize]));
             tree.add(leaf);
         }
-        *sums = tree.total();
-        rejected
+        (tree.take_total(), rejected)
     }
 
     #[inline]
@@ -336,10 +338,12 @@ impl PairwiseSum {
         self.count += 1;
     }
 
-    /// The sum of a power of two of values.
-    fn total(&self) -> PixelSums {
+    /// The sum of a power of two of values; the next one begins.
+    fn take_total(&mut self) -> PixelSums {
         debug_assert!(self.count.is_power_of_two());
-        self.partial[self.count.trailing_zeros() as usize]
+        let level = self.count.trailing_zeros() as usize;
+        self.count = 0;
+        self.partial[level]
     }
 }
 
@@ -353,6 +357,6 @@ mod tests {
         for _ in 0..1 << 20 {
             tree.add([0.1; SUMS]);
         }
-        assert!((tree.total()[5] / (0.1 * (1 << 20) as f32) - 1.0).abs() < 1e-6);
+        assert!((tree.take_total()[5] / (0.1 * (1 << 20) as f32) - 1.0).abs() < 1e-6);
     }
 }
