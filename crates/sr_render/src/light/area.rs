@@ -22,6 +22,7 @@ pub struct AreaLight {
 #[derive(Clone, Debug)]
 enum Form {
     Mesh { triangles: Vec<Triangle>, by_area: AliasTable },
+    Parallelogram(Parallelogram),
     Sphere { center: Vec3, radius: f32, frame: glam::Mat3, inwards: bool },
     Disk { center: Vec3, u_axis: Vec3, v_axis: Vec3, normal: Vec3 },
 }
@@ -35,6 +36,43 @@ pub(crate) struct Triangle {
     pub uvs: [Vec2; 3],
     /// Unit normal of the emitting side.
     pub normal: Vec3,
+}
+
+/// Two triangles that are one: sampled as a whole, so that strata survive.
+#[derive(Clone, Copy, Debug)]
+struct Parallelogram {
+    corner: Vec3,
+    edges: [Vec3; 2],
+    normal: Vec3,
+    corner_uv: Vec2,
+    edge_uvs: [Vec2; 2],
+}
+
+impl Parallelogram {
+    /// The parallelogram that two triangles make, if they share a diagonal and its texture coordinates.
+    fn from_triangles(triangles: &[Triangle]) -> Option<Self> {
+        let [t, other] = triangles else { return None };
+        let shared = |i: usize| (0..3).find(|&j| t.vertex(i) == other.vertex(j));
+        // the corner of `t` that `other` lacks is the one between the edges
+        let apex = (0..3).find(|&i| shared(i).is_none())?;
+        let (next, last) = ((apex + 1) % 3, (apex + 2) % 3);
+        let (j, k) = (shared(next)?, shared(last)?);
+        let far = 3_usize.checked_sub(j + k).filter(|_| j != k)?;
+        let (corner, corner_uv) = t.vertex(apex);
+        let edges = [next, last].map(|i| t.vertex(i).0 - corner);
+        let edge_uvs = [next, last].map(|i| t.vertex(i).1 - corner_uv);
+        let (far, far_uv) = other.vertex(far);
+        let size = edges[0].length() + edges[1].length();
+        let is_flat = (corner + edges[0] + edges[1] - far).length() <= 1e-6 * size;
+        let maps_flat = (corner_uv + edge_uvs[0] + edge_uvs[1] - far_uv).length() <= 1e-6;
+        (is_flat && maps_flat).then_some(Self { corner, edges, normal: t.normal, corner_uv, edge_uvs })
+    }
+}
+
+impl Triangle {
+    fn vertex(&self, i: usize) -> (Vec3, Vec2) {
+        (self.positions[i], self.uvs[i])
+    }
 }
 
 /// A point on a light.
@@ -54,7 +92,11 @@ impl AreaLight {
         let areas: Vec<f32> = triangles.iter().map(area_of).collect();
         let area = areas.iter().map(|&a| f64::from(a)).sum::<f64>() as f32;
         let by_area = AliasTable::new(&areas).ok()?;
-        Some(Self::new(Form::Mesh { triangles, by_area }, radiance, area, textures))
+        let form = match Parallelogram::from_triangles(&triangles) {
+            Some(parallelogram) => Form::Parallelogram(parallelogram),
+            None => Form::Mesh { triangles, by_area },
+        };
+        Some(Self::new(form, radiance, area, textures))
     }
 
     /// A sphere that shines outwards (inwards if `inwards`).
@@ -117,6 +159,11 @@ impl AreaLight {
                 let uv = b.x * t.uvs[0] + b.y * t.uvs[1] + b.z * t.uvs[2];
                 LightPoint { p: mix(t.positions), normal: t.normal, uv }
             }
+            Form::Parallelogram(q) => LightPoint {
+                p: q.corner + u.x * q.edges[0] + u.y * q.edges[1],
+                normal: q.normal,
+                uv: q.corner_uv + u.x * q.edge_uvs[0] + u.y * q.edge_uvs[1],
+            },
             Form::Disk { center, u_axis, v_axis, normal } => {
                 let d = concentric_disk(u);
                 LightPoint { p: *center + d.x * *u_axis + d.y * *v_axis, normal: *normal, uv: disk_uv(d) }
@@ -229,5 +276,30 @@ mod sphere {
         let local = (frame.transpose() * outwards).normalize_or(Vec3::Z);
         let phi = local.y.atan2(local.x) / std::f32::consts::TAU;
         Vec2::new(if phi < 0.0 { phi + 1.0 } else { phi }, local.z.clamp(-1.0, 1.0).acos() / PI)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn triangle(positions: [Vec3; 3], uvs: [Vec2; 3]) -> Triangle {
+        Triangle { positions, uvs, normal: Vec3::Z }
+    }
+
+    #[test]
+    fn two_halves_of_a_square_are_one_parallelogram() {
+        let at = |x: f32, y: f32| (Vec3::new(2.0 * x, y, 0.0), Vec2::new(x, y));
+        let of = |corners: [(Vec3, Vec2); 3]| triangle(corners.map(|c| c.0), corners.map(|c| c.1));
+        let (a, b, c, d) = (at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0));
+        for second in [[a, c, d], [c, d, a], [d, a, c]] {
+            let q = Parallelogram::from_triangles(&[of([a, b, c]), of(second)]).unwrap();
+            assert_eq!(q.corner, b.0);
+            assert_eq!(q.corner + q.edges[0] + q.edges[1], d.0);
+        }
+        let bent = at(0.0, 1.1);
+        assert!(Parallelogram::from_triangles(&[of([a, b, c]), of([a, c, bent])]).is_none());
+        assert!(Parallelogram::from_triangles(&[of([a, b, c]), of([a, b, c])]).is_none());
+        assert!(Parallelogram::from_triangles(&[of([a, b, c])]).is_none());
     }
 }
