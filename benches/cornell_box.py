@@ -58,7 +58,9 @@ def mitsuba_run(size: int, spp: int, depth: int, threads: int) -> Callable[[int]
         {
             "type": "perspective",
             "fov": 39.3077,
-            "to_world": scene.sensors()[0].world_transform(),
+            "to_world": mi.ScalarTransform4f().look_at(
+                origin=[2.78, 2.73, -8], target=[2.78, 2.73, 0], up=[0, 1, 0]
+            ),
             "film": {"type": "hdrfilm", "width": size, "height": size, "rfilter": {"type": "box"}},
             "sampler": {"type": "independent", "sample_count": spp},
         }
