@@ -131,7 +131,7 @@ impl<'a> Vertex<'a> {
 
     /// A local direction in world space.
     #[inline]
-    pub fn to_world(&self, local: Vec3) -> Vec3 {
+    pub fn world_from_local(&self, local: Vec3) -> Vec3 {
         self.frame.to_world(local)
     }
 

@@ -72,16 +72,24 @@ impl<D: Distribution, S: AsRef<[(f32, D)]>> Mixture<D, S> {
     /// The weight and the component that a uniform selects: the first whose cumulative weight exceeds
     /// it. Never one of weight 0.
     pub fn pick(&self, u: f32) -> &(f32, D) {
+        self.pick_and_reuse(u).0
+    }
+
+    /// [`Mixture::pick`], and what is left of the uniform: a uniform that may be used again, if coarser.
+    ///
+    /// Used for the component's sample, it keeps the strata of the uniform that it came from.
+    pub fn pick_and_reuse(&self, u: f32) -> (&(f32, D), f32) {
+        const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;
         let mut left = u * self.sum;
         let mut last = &self.parts()[0];
         for part in self.parts().iter().filter(|(weight, _)| *weight > 0.0) {
             if left < part.0 {
-                return part;
+                return (part, (left / part.0).min(BELOW_ONE));
             }
             left -= part.0;
             last = part;
         }
-        last
+        (last, BELOW_ONE)
     }
 }
 

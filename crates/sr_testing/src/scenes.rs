@@ -307,7 +307,7 @@ fn mirror_in_front_of_a_light() -> KnownScene {
             eta_k: None,
             specular_reflectance: ColorInput::Constant(Rgb::splat(0.9)),
         };
-        let mut light = shape(sphere(Vec3::new(-0.8, 0.6, 1.8), 0.5, false), Some(7.0));
+        let mut light = shape(sphere(Vec3::new(-1.0, 0.8, 0.6), 0.4, false), Some(7.0));
         light.material = MaterialId(2);
         desc.shapes.push(light);
     });

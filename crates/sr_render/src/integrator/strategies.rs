@@ -22,7 +22,7 @@ use crate::scene::Scene;
 use crate::strategy::{Basic, Density, MAX_TECHNIQUES, Strategy};
 use crate::vertex::Vertex;
 
-/// Dimensions of one technique: component, lobe, direction (2).
+/// Dimensions of one technique: lobe or light, direction (2), and one to spare.
 const DIMENSIONS_PER_TECHNIQUE: u32 = 4;
 /// All techniques, roulette, delta light, and two to spare.
 const DIMENSIONS_PER_VERTEX: u32 = DIMENSIONS_PER_TECHNIQUE * MAX_TECHNIQUES as u32 + 4;
@@ -51,7 +51,7 @@ impl Distribution for Component<'_> {
 
     fn sample(&self, (u_lobe, u): (f32, Vec2)) -> Option<Sample<SolidAngle>> {
         let local = |vertex: &Vertex<'_>, s: Sample<SolidAngle>| {
-            let value = vertex.to_world(s.value);
+            let value = vertex.world_from_local(s.value);
             Some(Sample { value, pdf: s.pdf })
         };
         match self {
@@ -110,12 +110,11 @@ struct Step {
 }
 
 /// Draws a direction, delta lobes included.
-fn draw(
-    technique: &Technique<'_>,
-    vertex: &Vertex<'_>,
-    (u_pick, u_lobe, u): (f32, f32, Vec2),
-) -> Option<Step> {
-    let &(probability, component) = technique.pick(u_pick);
+///
+/// The component is picked by what is then used again for the direction: one well-spread pair for both.
+fn draw(technique: &Technique<'_>, vertex: &Vertex<'_>, (u_lobe, u): (f32, Vec2)) -> Option<Step> {
+    let (&(probability, component), u_left) = technique.pick_and_reuse(u.x);
+    let u = Vec2::new(u_left, u.y);
     let mut eta = 1.0;
     let wi = if let Component::Bsdf(_) = component {
         let s = vertex.sample(u_lobe, u)?;
@@ -251,7 +250,7 @@ impl StrategyTracer {
     ) -> Option<(Step, Share)> {
         let uniforms = |slot: usize| {
             let mut u = u.at(dimension + DIMENSIONS_PER_TECHNIQUE * slot as u32);
-            (u.next_1d(), u.next_1d(), u.next_2d())
+            (u.next_1d(), u.next_2d())
         };
         let bsdf_alone = technique(scene, vertex, Density::single(Basic::Bsdf));
         if !vertex.lobes().smooth() {
@@ -280,9 +279,9 @@ impl StrategyTracer {
             if Some(index) == main {
                 continue;
             }
-            let (u_pick, u_lobe, u_direction) = uniforms(index);
+            let (u_lobe, u_direction) = uniforms(index);
             if given.covers_surface() {
-                let Some(step) = draw(&at_vertex[index], vertex, (u_pick, u_lobe, u_direction)) else {
+                let Some(step) = draw(&at_vertex[index], vertex, (u_lobe, u_direction)) else {
                     continue;
                 };
                 if step.delta || step.weight == Rgb::ZERO {
@@ -292,7 +291,7 @@ impl StrategyTracer {
                 *li +=
                     beta * step.weight * self.light_along(scene, &vertex.surface.spawn_ray(step.wi), share);
             } else if let Some(s) =
-                scene.lights.sample(vertex.surface.p, u_pick, u_direction, &scene.textures)
+                scene.lights.sample(vertex.surface.p, u_lobe, u_direction, &scene.textures)
             {
                 let f_cos = vertex.f_cos(s.wi);
                 if f_cos != Rgb::ZERO && visible(scene, &vertex.surface, &s) {
