@@ -126,7 +126,9 @@ def worst_z(c: Comparison) -> tuple[float, str]:
     # rounding of the files: half-precision would be 5e-4, single precision is 6e-8
     z = np.abs(difference) / np.maximum(error, 1e-6 * np.abs(c.reference) + 1e-12)
     at = np.unravel_index(np.argmax(z), z.shape)
-    return float(z[at]), f"(row, column, channel) {at}: {c.ours[at]} against {c.reference[at]}, z = {z[at]:.2f}"
+    return float(
+        z[at]
+    ), f"(row, column, channel) {at}: {c.ours[at]} against {c.reference[at]}, z = {z[at]:.2f}"
 
 
 def by_blocks(c: Comparison) -> Comparison:
