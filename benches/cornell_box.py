@@ -2,12 +2,12 @@
 
     python benches/cornell_box.py [--size 512] [--spp 16] [--runs 7] [--depth 8] [--threads 2]
 
-Prints one table: each renderer's median, and the median of the ratios of runs that were taken in turn, so that a
-machine whose speed drifts does not favour either. The same scene, depth, strategy (BSDF and light sampling, power
-heuristic), independent samples, no Russian roulette.
+Prints one table: each renderer's median, and the median of the ratios of runs that were taken in turn, so
+that a machine whose speed drifts does not favour either. The same scene, depth, strategy (BSDF and light
+sampling, power heuristic), independent samples, no Russian roulette.
 
-Needs ``steradian`` and ``mitsuba`` (``pip install mitsuba==3.9.1``) in one environment, and LLVM for Mitsuba's
-vectorised variant (Debian: ``libllvm19``; elsewhere set ``DRJIT_LIBLLVM_PATH``).
+Needs ``steradian`` and ``mitsuba`` (``pip install mitsuba==3.9.1``) in one environment, and LLVM for
+Mitsuba's vectorised variant (Debian: ``libllvm19``; elsewhere set ``DRJIT_LIBLLVM_PATH``).
 """
 
 from __future__ import annotations

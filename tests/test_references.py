@@ -1,18 +1,19 @@
 """Scenes that others made, against references that another renderer made, pixel by pixel.
 
-The scenes are not part of the project. They are looked for in ``$STERADIAN_SCENES``, else beside the repository in
-``shared/scenes``; a test that does not find them fails if ``CI=true`` and is skipped otherwise.
+The scenes are not part of the project. They are looked for in ``$STERADIAN_SCENES``, else beside the
+repository in ``shared/scenes``; a test that does not find them fails if ``CI=true`` and is skipped otherwise.
 
-Each reference is the mean radiance and the variance of that mean, per pixel, from independent seeds. Three tests:
+Each reference is the mean radiance and the variance of that mean, per pixel, from independent seeds. Three
+tests:
 
 - the image's mean in each channel, within 3 combined standard errors or 0.3 %, whichever is larger;
 - every pixel, by z, Šidák-corrected over pixels and channels;
 - means of 8 × 8 blocks, the same way: less noise, so smaller differences show.
 
-A pixel with a rare bright path has most of its variance in samples that eight replicates may not have met. Some of
-its neighbours have met them, and the reference has met more: the largest of the variances that we estimate in the
-3 × 3 pixels around it, and that the reference predicts for as many samples, counts. The mean of an image needs no
-such care: there, our own variances are used as they are.
+A pixel with a rare bright path has most of its variance in samples that eight replicates may not have met.
+Some of its neighbours have met them, and the reference has met more: the largest of the variances that we
+estimate in the 3 × 3 pixels around it, and that the reference predicts for as many samples, counts. The mean
+of an image needs no such care: there, our own variances are used as they are.
 """
 
 from __future__ import annotations
