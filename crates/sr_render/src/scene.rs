@@ -7,7 +7,7 @@ use std::sync::Arc;
 use sr_geometry::{
     Disk, Geometry, GeometryError, GeometryInput, Instance, Shape, ShapeId, Sphere, TriangleMesh,
 };
-use sr_scene::{CameraDesc, Emission, LightDesc, MaterialId, MeshDesc, SceneDesc, Settings, ShapeDesc, Span};
+use sr_scene::{CameraDesc, Emission, LightDesc, MaterialId, MeshDesc, SceneDesc, Settings, ShapeDesc};
 use thiserror::Error;
 
 use crate::light::{
@@ -245,10 +245,4 @@ fn area_light(
             Some(AreaLight::disk(center, u_axis, v_axis, normal, emission.radiance, textures))
         }
     }
-}
-
-/// Where a shape was described, for messages about it.
-pub fn span_of_shape(desc: &SceneDesc, id: ShapeId) -> Option<&Span> {
-    let shapes = desc.shapes.iter().chain(desc.groups.iter().flat_map(|g| &g.shapes));
-    shapes.map(|shape| &shape.span).nth(id.0 as usize)
 }
