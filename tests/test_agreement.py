@@ -11,13 +11,13 @@ import steradian as sr
 
 # Samples per pixel, by how noisy each strategy is: pairs can then be told apart at 0.1 %.
 SAMPLES = {
-    "uniform": 32_768,
+    "uniform": 24_576,
     "cosine": 16_384,
     "bsdf": 16_384,
-    "light": 512,
-    "0.5 cosine + 0.5 light": 1024,
-    "mis(bsdf, light)": 512,
-    "mis(light, bsdf)": 512,  # the default in another order: the general integrator instead of the fast one
+    "light": 1536,
+    "0.5 cosine + 0.5 light": 3072,
+    "mis(bsdf, light)": 1536,
+    "mis(light, bsdf)": 1536,  # the default in another order: the general integrator instead of the fast one
 }
 SIZE = (48, 48)
 DEPTH = 4
