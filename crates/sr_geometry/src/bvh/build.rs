@@ -57,11 +57,16 @@ impl Part {
     }
 }
 
-/// Builds the tree, reordering `prims`. The result does not depend on the number of threads.
+/// Builds the tree over at least one primitive, reordering `prims`. The result does not depend on the number of threads.
+/// Its root is a node.
 pub(super) fn build(prims: &mut [PrimRef]) -> BuiltTree {
     let mut tree = BuiltTree { root: NodeRef::NONE, nodes: Vec::new(), leaves: Vec::new() };
-    if !prims.is_empty() {
-        tree.root = build_subtree(prims, 0, 1, &mut tree);
+    tree.root = build_subtree(prims, 0, 1, &mut tree);
+    if !tree.root.is_node() {
+        let mut root = Node::empty();
+        root.set_child(0, &Extent::of(prims).bounds, tree.root);
+        tree.nodes.push(root);
+        tree.root = NodeRef::node(0);
     }
     tree
 }

@@ -1,13 +1,18 @@
 //! One 8-wide bounding volume hierarchy for triangles, spheres, disks and instances.
 //!
 //! In: [`PrimRef`]s, a box and an identity each. Out: [`Bvh`], flat arrays of nodes and of blocks of up to eight
-//! triangles, and a [`NodeRef`] per tree. `build` decides the tree, `traverse` walks it with the
-//! instruction set that `simd` chose. Several trees (the world's and the groups') share the arrays.
+//! triangles, and a [`Tree`] per call. `build` decides the tree, `traverse` walks it, `scan` meets the triangles of
+//! trees that are not worth a node; `dispatch` chooses the instruction set. Several trees (the world's and the
+//! groups') share the arrays.
 //!
 //! Invariant: every tree is at most [`MAX_DEPTH`] nodes deep, so the traversal stack cannot overflow.
 
 mod build;
+mod dispatch;
+mod scan;
+mod sheared;
 mod simd;
+mod slabs;
 mod split;
 #[cfg(test)]
 mod tests;
@@ -16,13 +21,19 @@ mod traverse;
 use glam::Vec3;
 use rayon::prelude::*;
 
-use crate::{Bounds3, ShapeId};
+use crate::{Bounds3, Hit, NO_INSTANCE, ShapeId};
 use simd::Kernel;
 
 use build::MAX_DEPTH;
 
 /// Children of a node, and triangles of a block.
 pub(crate) const WIDTH: usize = 8;
+
+/// Triangles of a block of a tree that is none, but a few triangles.
+const WIDE: usize = 16;
+
+/// Up to this many triangles get no tree: meeting all of them is faster (see docs/performance.md).
+const FEW: usize = 64;
 
 /// The largest number of nodes, of blocks or of other primitives that a [`NodeRef`] can tell apart.
 pub(crate) const MAX_INDEX: usize = (1 << 30) - 1;
@@ -103,40 +114,42 @@ impl NodeRef {
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct Node {
-    /// Per axis: smallest, largest coordinates.
-    bounds: [[[f32; WIDTH]; 2]; 3],
+    /// Rows: the smallest and the largest coordinates of x, of y, of z.
+    bounds: [[f32; WIDTH]; 6],
     children: [NodeRef; WIDTH],
 }
 
 impl Node {
     fn empty() -> Self {
-        let axis = [[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]];
-        Self { bounds: [axis; 3], children: [NodeRef::NONE; WIDTH] }
+        let bounds = std::array::from_fn(|row| match row % 2 {
+            0 => [f32::INFINITY; WIDTH],
+            _ => [f32::NEG_INFINITY; WIDTH],
+        });
+        Self { bounds, children: [NodeRef::NONE; WIDTH] }
     }
 
     fn set_child(&mut self, slot: usize, bounds: &Bounds3, child: NodeRef) {
         for axis in 0..3 {
-            self.bounds[axis][0][slot] = bounds.min[axis];
-            self.bounds[axis][1][slot] = bounds.max[axis];
+            self.bounds[2 * axis][slot] = bounds.min[axis];
+            self.bounds[2 * axis + 1][slot] = bounds.max[axis];
         }
         self.children[slot] = child;
     }
 }
 
-/// Up to eight triangles, transposed. Missing ones have NaN vertices, which no ray hits.
+/// Up to `N` triangles, transposed. Missing ones have NaN vertices, which no ray hits.
 #[derive(Clone, Copy, Debug)]
-#[repr(C, align(32))]
-pub(crate) struct TriangleBlock {
+#[repr(C, align(64))]
+pub(crate) struct TriangleBlock<const N: usize> {
     /// By vertex, then axis.
-    vertices: [[[f32; WIDTH]; 3]; 3],
-    shape: [u32; WIDTH],
-    primitive: [u32; WIDTH],
+    vertices: [[[f32; N]; 3]; 3],
+    shape: [u32; N],
+    primitive: [u32; N],
 }
 
-impl TriangleBlock {
+impl<const N: usize> TriangleBlock<N> {
     fn new(prims: &[PrimRef], vertices_of: impl Fn(ShapeId, u32) -> [Vec3; 3]) -> Self {
-        let mut block =
-            Self { vertices: [[[f32::NAN; WIDTH]; 3]; 3], shape: [0; WIDTH], primitive: [0; WIDTH] };
+        let mut block = Self { vertices: [[[f32::NAN; N]; 3]; 3], shape: [0; N], primitive: [0; N] };
         for (lane, prim) in prims.iter().enumerate() {
             let vertices = vertices_of(ShapeId(prim.shape), prim.primitive);
             for (of_block, vertex) in block.vertices.iter_mut().zip(vertices) {
@@ -149,25 +162,42 @@ impl TriangleBlock {
         }
         block
     }
+
+    /// The hit of one of the triangles.
+    #[inline(always)]
+    fn hit(&self, lane: usize, t: f32, [b1, b2]: [f32; 2]) -> Hit {
+        let (shape, primitive) = (ShapeId(self.shape[lane % N]), self.primitive[lane % N]);
+        Hit { t, b1, b2, shape, primitive, instance: NO_INSTANCE }
+    }
 }
 
 /// One tree within a [`Bvh`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Tree {
-    root: NodeRef,
+    form: Form,
     pub bounds: Bounds3,
+}
+
+/// How a tree is stored.
+#[derive(Clone, Copy, Debug)]
+enum Form {
+    /// Below a node.
+    Nodes(NodeRef),
+    /// As `count` triangles in wide blocks from `first` on, without nodes.
+    Few { first: u32, count: u32 },
 }
 
 impl Tree {
     /// The tree without primitives.
-    pub const EMPTY: Self = Self { root: NodeRef::NONE, bounds: Bounds3::EMPTY };
+    pub const EMPTY: Self = Self { form: Form::Few { first: 0, count: 0 }, bounds: Bounds3::EMPTY };
 }
 
 /// The arrays that all trees share.
 #[derive(Debug)]
 pub(crate) struct Bvh {
     nodes: Vec<Node>,
-    blocks: Vec<TriangleBlock>,
+    blocks: Vec<TriangleBlock<WIDTH>>,
+    few: Vec<TriangleBlock<WIDE>>,
     kernel: Kernel,
     /// Is the tree so large that memory is worth asking for ahead of need?
     prefetches: bool,
@@ -175,7 +205,8 @@ pub(crate) struct Bvh {
 
 impl Bvh {
     pub fn new() -> Self {
-        Self { nodes: Vec::new(), blocks: Vec::new(), kernel: Kernel::detect(), prefetches: false }
+        let kernel = Kernel::detect();
+        Self { nodes: Vec::new(), blocks: Vec::new(), few: Vec::new(), kernel, prefetches: false }
     }
 
     /// Builds a tree over `prims`, which it reorders. `vertices_of` fetches a triangle's vertices.
@@ -185,6 +216,11 @@ impl Bvh {
         vertices_of: impl Fn(ShapeId, u32) -> [Vec3; 3] + Sync,
     ) -> Tree {
         let bounds = prims.par_iter().map(|p| p.bounds).reduce(|| Bounds3::EMPTY, Bounds3::union);
+        if prims.len() <= FEW && prims.iter().all(PrimRef::is_triangle) {
+            let form = Form::Few { first: self.few.len() as u32, count: prims.len() as u32 };
+            self.few.extend(prims.chunks(WIDE).map(|prims| TriangleBlock::new(prims, &vertices_of)));
+            return Tree { form, bounds };
+        }
         let (first_node, first_block) = (self.nodes.len(), self.blocks.len());
         let mut tree = build::build(prims);
         tree.shift(first_node, first_block);
@@ -194,11 +230,11 @@ impl Bvh {
             tree.leaves.par_iter().map(|leaf| TriangleBlock::new(&prims[leaf.clone()], &vertices_of));
         self.blocks.par_extend(blocks);
         self.prefetches = self.memory_bytes() > PREFETCH_FROM;
-        Tree { root: tree.root, bounds }
+        Tree { form: Form::Nodes(tree.root), bounds }
     }
 
     /// Bytes of nodes and blocks.
     pub fn memory_bytes(&self) -> usize {
-        size_of_val(&self.nodes[..]) + size_of_val(&self.blocks[..])
+        size_of_val(&self.nodes[..]) + size_of_val(&self.blocks[..]) + size_of_val(&self.few[..])
     }
 }

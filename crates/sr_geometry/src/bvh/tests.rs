@@ -2,8 +2,8 @@
 
 use glam::Vec3;
 
-use super::simd::{Kernel, Portable};
-use super::{Bvh, MAX_DEPTH, NodeRef, PrimRef, Tree};
+use super::simd::Kernel;
+use super::{Bvh, FEW, Form, MAX_DEPTH, NodeRef, PrimRef, Tree, WIDE};
 use crate::{Bounds3, Ray, ShapeId};
 
 /// A triangle at `at` with edges of about `size`.
@@ -42,7 +42,7 @@ fn visit(bvh: &Bvh, child: NodeRef, bounds: &Bounds3, found: &mut Vec<u32>) -> u
     let node = &bvh.nodes[child.index()];
     let mut depth = 0;
     for slot in (0..8).filter(|&slot| node.children[slot] != NodeRef::NONE) {
-        let end = |end: usize| Vec3::from_array([0, 1, 2].map(|axis| node.bounds[axis][end][slot]));
+        let end = |end: usize| Vec3::from_array([0, 1, 2].map(|axis| node.bounds[2 * axis + end][slot]));
         let inner = Bounds3 { min: end(0), max: end(1) };
         assert_eq!(bounds.union(inner), *bounds);
         depth = depth.max(visit(bvh, node.children[slot], &inner, found));
@@ -53,7 +53,14 @@ fn visit(bvh: &Bvh, child: NodeRef, bounds: &Bounds3, found: &mut Vec<u32>) -> u
 fn check_tree(triangles: &[[Vec3; 3]]) -> usize {
     let (bvh, tree) = build(triangles);
     let mut found = Vec::new();
-    let depth = visit(&bvh, tree.root, &tree.bounds, &mut found);
+    let depth = match tree.form {
+        Form::Nodes(root) => visit(&bvh, root, &tree.bounds, &mut found),
+        Form::Few { first, count } => {
+            let triangle = |i: usize| bvh.few[first as usize + i / WIDE].primitive[i % WIDE];
+            found.extend((0..count as usize).map(triangle));
+            0
+        }
+    };
     found.sort_unstable();
     assert!(found.into_iter().eq(0..triangles.len() as u32), "each triangle is in exactly one block");
     assert!(depth <= MAX_DEPTH, "{depth}");
@@ -62,7 +69,7 @@ fn check_tree(triangles: &[[Vec3; 3]]) -> usize {
 
 #[test]
 fn every_triangle_is_in_one_block_within_its_boxes() {
-    for count in [1, 8, 9, 100, 10_000] {
+    for count in [1, 8, 17, FEW as u32, FEW as u32 + 1, 10_000] {
         let at = |i: u32| Vec3::new((i % 17) as f32, (i % 31) as f32, (i % 101) as f32);
         let triangles: Vec<_> = (0..count).map(|i| triangle(at(i), 0.5, i)).collect();
         check_tree(&triangles);
@@ -83,7 +90,7 @@ fn the_depth_is_bounded_where_the_heuristic_peels_off_one_at_a_time() {
 #[test]
 fn kernels_agree_to_the_bit() {
     let at = |i: u32| 3.0 * Vec3::new(i as f32, 1.7 * i as f32, 2.9 * i as f32).map(f32::sin);
-    for (count, size) in [(5, 2.0), (300, 1.0), (5000, 0.3)] {
+    for (count, size) in [(5, 2.0), (37, 1.5), (300, 1.0), (5000, 0.3)] {
         let triangles: Vec<_> = (0..count).map(|i| triangle(at(i), size, i)).collect();
         let (mut bvh, tree) = build(&triangles);
         let none = |_: u32, _: &Ray| None;
@@ -102,8 +109,10 @@ fn kernels_agree_to_the_bit() {
             rays.iter().map(|ray| (bvh.intersect(&tree, ray, none), bvh.occluded(&tree, ray, none))).collect()
         };
         let detected = hits(&bvh);
-        bvh.kernel = Kernel::Portable(Portable);
-        assert_eq!(detected, hits(&bvh));
+        for kernel in Kernel::available() {
+            bvh.kernel = kernel;
+            assert_eq!(detected, hits(&bvh), "{kernel:?}");
+        }
         assert!(detected.iter().filter(|(hit, _)| hit.is_some()).count() > 100);
     }
 }

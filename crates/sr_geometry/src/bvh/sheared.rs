@@ -1,0 +1,135 @@
+//! A ray, made ready to meet many triangles at once.
+//!
+//! Woop, Benthin & Wald 2013, "Watertight ray/triangle intersection": vertices are moved to the ray's origin and
+//! sheared so that the ray becomes the +Z axis; a vertex lands on the same point for every triangle that shares it,
+//! and the sign of an edge function is never wrong, so no ray slips between neighbours.
+
+use glam::Vec3A;
+
+use super::simd::Lanes;
+use crate::Ray;
+
+/// Rounding error of a sheared vertex, per unit of its distance from the ray's origin (largest component).
+pub(super) const SHEAR_SLACK: f32 = 5.0 * f32::EPSILON;
+
+/// An order of the axes; the fourth is none.
+#[repr(align(16))]
+pub(super) struct Order(pub [u32; 4]);
+
+/// Orders whose last axis is that along which the direction is longest, by a mask of the longest axes.
+static AXES: [Order; 8] = {
+    const X: Order = Order([1, 2, 0, 3]);
+    const Y: Order = Order([2, 0, 1, 3]);
+    const Z: Order = Order([0, 1, 2, 3]);
+    [Z, X, Y, X, Z, X, Y, X]
+};
+
+/// Triangles, transposed.
+pub(super) trait Triangles<L: Lanes> {
+    /// One coordinate of one vertex of all triangles.
+    ///
+    /// # Safety
+    /// `vertex` and `axis` are below 3.
+    unsafe fn coordinate(&self, lanes: L, vertex: usize, axis: usize) -> L::F;
+}
+
+/// A ray, ready to meet triangles.
+pub(super) struct Sheared<L: Lanes> {
+    /// Axes: the two that are sheared, and last the one along which the direction is longest.
+    axes: [usize; 3],
+    /// Origin, in the order of `axes`.
+    origin: [L::F; 3],
+    /// What z is multiplied by: shears of the first two axes, and the scale of the last.
+    shear: [L::F; 3],
+}
+
+/// Triangles as a ray sees them.
+pub(super) struct Projected<L: Lanes> {
+    /// Which triangles the line of the ray passes through.
+    pub inside: L::Mask,
+    /// Twice the signed areas of the triangles that the ray makes with the edges opposite to the vertices.
+    areas: [L::F; 3],
+    /// Unscaled distances of the vertices along the ray.
+    z: [L::F; 3],
+}
+
+/// Where a ray meets triangles.
+pub(super) struct Meets<L: Lanes> {
+    /// Which are met.
+    pub hit: L::Mask,
+    /// Ray parameters.
+    pub t: L::F,
+    /// Barycentric coordinates of vertices 1 and 2.
+    pub b: [L::F; 2],
+}
+
+impl<L: Lanes> Sheared<L> {
+    /// A ray that is not finite or has no direction becomes one that meets nothing: its shears or its scale are not
+    /// numbers, or its scale is 0.
+    #[inline(always)]
+    pub fn new(lanes: L, ray: &Ray) -> Self {
+        let (origin, direction) = (Vec3A::from(ray.origin), Vec3A::from(ray.direction));
+        let length = direction.abs();
+        let longest = length.cmpeq(Vec3A::splat(length.max_element())).bitmask();
+        let order = &AXES[longest as usize & 7];
+        let (origin, along) = (lanes.permute(origin, order), lanes.permute(direction, order));
+        let scale = 1.0 / along.z;
+        Self {
+            axes: [order.0[0] as usize, order.0[1] as usize, order.0[2] as usize],
+            origin: [lanes.splat(origin.x), lanes.splat(origin.y), lanes.splat(origin.z)],
+            shear: [lanes.splat(along.x * scale), lanes.splat(along.y * scale), lanes.splat(scale)],
+        }
+    }
+
+    /// Triangles as the ray sees them.
+    #[inline(always)]
+    pub fn project(&self, lanes: L, triangles: &impl Triangles<L>) -> Projected<L> {
+        let a = self.sheared(lanes, triangles, 0);
+        let b = self.sheared(lanes, triangles, 1);
+        let c = self.sheared(lanes, triangles, 2);
+        let areas @ [of_a, of_b, of_c] = [edge(lanes, c, b), edge(lanes, a, c), edge(lanes, b, a)];
+        let zero = lanes.splat(0.0);
+        let least = lanes.min(lanes.min(of_a, of_b), of_c);
+        let most = lanes.max(lanes.max(of_a, of_b), of_c);
+        let inside = lanes.or(lanes.le(zero, least), lanes.le(most, zero));
+        Projected { inside, areas, z: [a[2], b[2], c[2]] }
+    }
+
+    /// Which triangles the ray meets in (0, `t_max`).
+    #[inline(always)]
+    pub fn meet(&self, lanes: L, seen: &Projected<L>, t_max: L::F) -> Meets<L> {
+        let [of_a, of_b, of_c] = seen.areas;
+        // An edge-on triangle has a zero determinant, hence t = NaN, which fails both comparisons.
+        let inv_det = lanes.div(lanes.splat(1.0), lanes.add(lanes.add(of_a, of_b), of_c));
+        let [b0, b1, b2] = [lanes.mul(of_a, inv_det), lanes.mul(of_b, inv_det), lanes.mul(of_c, inv_det)];
+        let z = lanes.add(lanes.mul(b0, seen.z[0]), lanes.mul(b1, seen.z[1]));
+        let z = lanes.add(z, lanes.mul(b2, seen.z[2]));
+        let t = lanes.mul(z, self.shear[2]);
+        let within = lanes.and(lanes.lt(lanes.splat(0.0), t), lanes.lt(t, t_max));
+        Meets { hit: lanes.and(seen.inside, within), t, b: [b1, b2] }
+    }
+
+    /// A vertex relative to the ray: sheared x and y, and unscaled z.
+    #[inline(always)]
+    fn sheared(&self, lanes: L, triangles: &impl Triangles<L>, vertex: usize) -> [L::F; 3] {
+        let [x, y, z] = self.axes;
+        // SAFETY: `axes` is a permutation of 0, 1, 2.
+        let [x, y, z] = unsafe {
+            [
+                triangles.coordinate(lanes, vertex, x),
+                triangles.coordinate(lanes, vertex, y),
+                triangles.coordinate(lanes, vertex, z),
+            ]
+        };
+        let x = lanes.sub(x, self.origin[0]);
+        let y = lanes.sub(y, self.origin[1]);
+        let z = lanes.sub(z, self.origin[2]);
+        [lanes.sub(x, lanes.mul(self.shear[0], z)), lanes.sub(y, lanes.mul(self.shear[1], z)), z]
+    }
+}
+
+/// Twice the signed area between the ray and the projected edge from `q` to `p`.
+#[inline(always)]
+fn edge<L: Lanes>(lanes: L, p: [L::F; 3], q: [L::F; 3]) -> L::F {
+    lanes.sub(lanes.mul(p[0], q[1]), lanes.mul(p[1], q[0]))
+}

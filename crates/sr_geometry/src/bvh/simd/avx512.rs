@@ -1,0 +1,114 @@
+//! Sixteen lanes in a 512-bit register.
+
+use std::arch::x86_64::*;
+
+use glam::Vec3A;
+
+use super::super::WIDE;
+use super::super::sheared::Order;
+use super::{Avx2, Lanes};
+
+/// Calls an intrinsic.
+macro_rules! avx512 {
+    ($call:expr) => {
+        // SAFETY: an `Avx512` exists only where AVX-512 was detected, and what is read is behind references.
+        unsafe { $call }
+    };
+}
+
+/// Proof that this processor has the parts F, VL, DQ and BW of AVX-512, and what an [`Avx2`] proves.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::bvh) struct Avx512(Avx2);
+
+impl Avx512 {
+    pub fn detect() -> Option<Self> {
+        let found = is_x86_feature_detected!("avx512f")
+            && is_x86_feature_detected!("avx512vl")
+            && is_x86_feature_detected!("avx512dq")
+            && is_x86_feature_detected!("avx512bw");
+        Avx2::detect().filter(|_| found).map(Self)
+    }
+
+    /// The same processor, eight lanes at a time.
+    pub fn eight(self) -> Avx2 {
+        self.0
+    }
+}
+
+impl Lanes for Avx512 {
+    type F = __m512;
+    type Mask = __mmask16;
+    const COUNT: usize = WIDE;
+
+    #[inline(always)]
+    fn splat(self, x: f32) -> Self::F {
+        avx512!(_mm512_set1_ps(x))
+    }
+    #[inline(always)]
+    fn permute(self, v: Vec3A, order: &Order) -> Vec3A {
+        self.0.permute(v, order)
+    }
+    #[inline(always)]
+    fn load_part(self, x: &[f32; WIDE], _part: usize) -> Self::F {
+        avx512!(_mm512_loadu_ps(x.as_ptr()))
+    }
+    #[inline(always)]
+    fn extract(self, x: Self::F, lane: usize) -> f32 {
+        avx512!(_mm512_cvtss_f32(_mm512_permutexvar_ps(_mm512_set1_epi32(lane as i32), x)))
+    }
+    #[inline(always)]
+    fn add(self, a: Self::F, b: Self::F) -> Self::F {
+        avx512!(_mm512_add_ps(a, b))
+    }
+    #[inline(always)]
+    fn sub(self, a: Self::F, b: Self::F) -> Self::F {
+        avx512!(_mm512_sub_ps(a, b))
+    }
+    #[inline(always)]
+    fn mul(self, a: Self::F, b: Self::F) -> Self::F {
+        avx512!(_mm512_mul_ps(a, b))
+    }
+    #[inline(always)]
+    fn div(self, a: Self::F, b: Self::F) -> Self::F {
+        avx512!(_mm512_div_ps(a, b))
+    }
+    #[inline(always)]
+    fn min(self, a: Self::F, b: Self::F) -> Self::F {
+        avx512!(_mm512_min_ps(a, b))
+    }
+    #[inline(always)]
+    fn max(self, a: Self::F, b: Self::F) -> Self::F {
+        avx512!(_mm512_max_ps(a, b))
+    }
+    #[inline(always)]
+    fn le(self, a: Self::F, b: Self::F) -> Self::Mask {
+        avx512!(_mm512_cmp_ps_mask::<_CMP_LE_OQ>(a, b))
+    }
+    #[inline(always)]
+    fn lt(self, a: Self::F, b: Self::F) -> Self::Mask {
+        avx512!(_mm512_cmp_ps_mask::<_CMP_LT_OQ>(a, b))
+    }
+    #[inline(always)]
+    fn and(self, a: Self::Mask, b: Self::Mask) -> Self::Mask {
+        a & b
+    }
+    #[inline(always)]
+    fn or(self, a: Self::Mask, b: Self::Mask) -> Self::Mask {
+        a | b
+    }
+    #[inline(always)]
+    fn bits(self, mask: Self::Mask) -> u32 {
+        mask.into()
+    }
+    #[inline(always)]
+    fn select(self, mask: Self::Mask, a: Self::F, b: Self::F) -> Self::F {
+        avx512!(_mm512_mask_blend_ps(mask, b, a))
+    }
+    #[inline(always)]
+    fn least(self, x: Self::F) -> f32 {
+        avx512!({
+            let high = _mm256_castpd_ps(_mm512_extractf64x4_pd::<1>(_mm512_castps_pd(x)));
+            self.0.least(_mm256_min_ps(_mm512_castps512_ps256(x), high))
+        })
+    }
+}

@@ -1,0 +1,102 @@
+//! Several `f32` at once: the few operations that traversal needs, in AVX-512, in AVX2 and in plain Rust.
+//!
+//! All give the same bits: nothing is fused or reassociated, and `min` and `max` treat NaN alike.
+//!
+//! Whoever calls these methods is compiled for the instruction set of its caller only if it is a function that is
+//! always inlined; a closure is not.
+
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
+mod portable;
+
+#[cfg(target_arch = "x86_64")]
+pub(super) use {avx2::Avx2, avx512::Avx512};
+
+pub(super) use portable::Portable;
+
+use glam::Vec3A;
+
+use super::sheared::Order;
+use super::{WIDE, WIDTH};
+
+/// The bits of a key that tell its lane.
+pub(super) const LANE: u32 = WIDTH as u32 - 1;
+
+/// A number of lanes. `min(a, b)` and `max(a, b)` return `b` where either is NaN.
+pub(super) trait Lanes: Copy {
+    type F: Copy;
+    type Mask: Copy;
+    /// How many, a divisor of [`WIDE`].
+    const COUNT: usize;
+    fn splat(self, x: f32) -> Self::F;
+    /// v[order[0]], v[order[1]], v[order[2]]
+    fn permute(self, v: Vec3A, order: &Order) -> Vec3A;
+    /// `x[part * COUNT ..][.. COUNT]`
+    fn load_part(self, x: &[f32; WIDE], part: usize) -> Self::F;
+    /// x[lane]; `lane` is taken modulo the count.
+    fn extract(self, x: Self::F, lane: usize) -> f32;
+    fn add(self, a: Self::F, b: Self::F) -> Self::F;
+    fn sub(self, a: Self::F, b: Self::F) -> Self::F;
+    fn mul(self, a: Self::F, b: Self::F) -> Self::F;
+    fn div(self, a: Self::F, b: Self::F) -> Self::F;
+    fn min(self, a: Self::F, b: Self::F) -> Self::F;
+    fn max(self, a: Self::F, b: Self::F) -> Self::F;
+    /// a[i] ≤ b[i]; false where either is NaN.
+    fn le(self, a: Self::F, b: Self::F) -> Self::Mask;
+    /// a[i] < b[i]; false where either is NaN.
+    fn lt(self, a: Self::F, b: Self::F) -> Self::Mask;
+    fn and(self, a: Self::Mask, b: Self::Mask) -> Self::Mask;
+    fn or(self, a: Self::Mask, b: Self::Mask) -> Self::Mask;
+    /// Bit i: is lane i set?
+    fn bits(self, mask: Self::Mask) -> u32;
+    /// a[i] where the mask is set, else b[i].
+    fn select(self, mask: Self::Mask, a: Self::F, b: Self::F) -> Self::F;
+    /// The smallest lane. None may be NaN.
+    fn least(self, x: Self::F) -> f32;
+}
+
+/// Eight lanes, with what orders the children of a node.
+pub(super) trait Simd: Lanes {
+    type Keys: Copy;
+    fn load(self, x: &[f32; WIDTH]) -> Self::F;
+    /// What orders the lanes by `x` ≥ 0: the bits of x[i] with the lowest three replaced by i.
+    /// `u32::MAX` for lanes where not x[i] ≤ `limit`[i].
+    fn keys(self, x: Self::F, limit: Self::F) -> Self::Keys;
+    /// The smallest key.
+    fn least_key(self, keys: Self::Keys) -> u32;
+    /// Removes and returns the smallest key, leaving `u32::MAX` in its lane.
+    fn take_least(self, keys: &mut Self::Keys) -> u32;
+    /// Asks for the cache lines of a `T` that may be needed soon. Any address will do: nothing is read.
+    fn prefetch<T>(self, start: *const T);
+}
+
+/// The instruction set that traversal uses, chosen when the tree is built.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Kernel {
+    #[cfg(target_arch = "x86_64")]
+    Avx512(Avx512),
+    #[cfg(target_arch = "x86_64")]
+    Avx2(Avx2),
+    Portable(Portable),
+}
+
+impl Kernel {
+    /// The fastest that this processor has.
+    pub fn detect() -> Self {
+        Self::available().next().unwrap_or(Self::Portable(Portable))
+    }
+
+    /// Those that this processor has, fastest first.
+    pub fn available() -> impl Iterator<Item = Self> {
+        let kernels = [
+            #[cfg(target_arch = "x86_64")]
+            Avx512::detect().map(Self::Avx512),
+            #[cfg(target_arch = "x86_64")]
+            Avx2::detect().map(Self::Avx2),
+            Some(Self::Portable(Portable)),
+        ];
+        kernels.into_iter().flatten()
+    }
+}
