@@ -17,6 +17,12 @@ impl<B: Bsdf> Mask<B> {
     pub fn new(opacity: f32, inner: B) -> Self {
         Self { opacity: opacity.clamp(0.0, 1.0), inner }
     }
+
+    /// The same holes in another model.
+    #[inline]
+    pub fn map<C: Bsdf>(self, change: impl FnOnce(B) -> C) -> Mask<C> {
+        Mask { opacity: self.opacity, inner: change(self.inner) }
+    }
 }
 
 impl<B: Bsdf> Bsdf for Mask<B> {

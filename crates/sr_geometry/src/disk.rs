@@ -5,7 +5,8 @@ use std::f32::consts::TAU;
 use glam::{DVec3, Vec2, Vec3};
 
 use crate::offset::ROUNDING;
-use crate::{Disk, Ray, Surface, Tangents};
+use crate::surface::Located;
+use crate::{Disk, Ray, Tangents};
 
 impl Disk {
     /// t in (0, `t_max`) where the ray meets the disk, and the coordinates along the two half-axes.
@@ -21,13 +22,13 @@ impl Disk {
     }
 
     /// The surface at coordinates along the two half-axes.
-    pub(crate) fn surface(&self, at: Vec2) -> Surface {
+    pub(crate) fn located(&self, at: Vec2) -> Located {
         let (a, b) = (at.x * self.u_axis, at.y * self.v_axis);
         let p = self.center + (a + b);
         let n = self.u_axis.as_dvec3().cross(self.v_axis.as_dvec3()).normalize().as_vec3();
         let ng = if self.flip_normals { -n } else { n };
         let phi = at.y.atan2(at.x);
-        Surface {
+        Located {
             p,
             p_error: ROUNDING * (2.0 * p.abs() + 6.0 * (a.abs() + b.abs())),
             ng,

@@ -249,38 +249,20 @@ impl Geometry {
     /// A triangle's vertices, in the space of its list. Panics if `shape` is no mesh.
     #[inline]
     pub fn triangle_vertices(&self, shape: ShapeId, triangle: u32) -> [Vec3; 3] {
-        let mesh = self.mesh(shape);
-        self.indices(mesh, triangle).map(|i| self.positions[(mesh.first_vertex + i) as usize])
+        self.corners(shape, triangle).positions()
     }
 
-    /// A triangle's vertex normals, if the mesh has any. Panics if `shape` is no mesh.
-    #[inline]
-    pub fn triangle_normals(&self, shape: ShapeId, triangle: u32) -> Option<[Vec3; 3]> {
-        let mesh = self.mesh(shape);
-        let first = mesh.first_normal?;
-        Some(self.indices(mesh, triangle).map(|i| self.normals[(first + i) as usize]))
-    }
-
-    /// A triangle's texture coordinates, if the mesh has any. Panics if `shape` is no mesh.
-    #[inline]
-    pub fn triangle_uvs(&self, shape: ShapeId, triangle: u32) -> Option<[Vec2; 3]> {
-        let mesh = self.mesh(shape);
-        let first = mesh.first_uv?;
-        Some(self.indices(mesh, triangle).map(|i| self.uvs[(first + i) as usize]))
-    }
-
-    #[inline]
-    fn mesh(&self, shape: ShapeId) -> &MeshRecord {
+    /// A triangle's corners. Panics if `shape` is no mesh.
+    #[inline(always)]
+    pub(crate) fn corners(&self, shape: ShapeId, triangle: u32) -> Corners<'_> {
         match &self.shapes[shape.0 as usize] {
-            ShapeRecord::Mesh(mesh) => mesh,
+            ShapeRecord::Mesh(mesh) => {
+                debug_assert!(triangle < mesh.triangles);
+                let indices = self.triangles[(mesh.first_triangle + triangle) as usize];
+                Corners { geometry: self, mesh, indices }
+            }
             other => panic!("shape {} is no mesh but {other:?}", shape.0),
         }
-    }
-
-    #[inline]
-    fn indices(&self, mesh: &MeshRecord, triangle: u32) -> [u32; 3] {
-        debug_assert!(triangle < mesh.triangles);
-        self.triangles[(mesh.first_triangle + triangle) as usize]
     }
 
     /// The instance with this index; `None` for [`NO_INSTANCE`].
@@ -301,6 +283,35 @@ impl Geometry {
             + size_of_val(&self.instances[..])
             + size_of_val(&self.others[..])
             + self.bvh.memory_bytes()
+    }
+}
+
+/// The corners of a triangle.
+pub(crate) struct Corners<'a> {
+    geometry: &'a Geometry,
+    mesh: &'a MeshRecord,
+    indices: [u32; 3],
+}
+
+impl Corners<'_> {
+    /// Positions, in the space of the mesh's list.
+    #[inline(always)]
+    pub fn positions(&self) -> [Vec3; 3] {
+        self.indices.map(|i| self.geometry.positions[(self.mesh.first_vertex + i) as usize])
+    }
+
+    /// Normals, if the mesh has any.
+    #[inline(always)]
+    pub fn normals(&self) -> Option<[Vec3; 3]> {
+        let first = self.mesh.first_normal?;
+        Some(self.indices.map(|i| self.geometry.normals[(first + i) as usize]))
+    }
+
+    /// Texture coordinates, if the mesh has any.
+    #[inline(always)]
+    pub fn uvs(&self) -> Option<[Vec2; 3]> {
+        let first = self.mesh.first_uv?;
+        Some(self.indices.map(|i| self.geometry.uvs[(first + i) as usize]))
     }
 }
 

@@ -5,7 +5,8 @@ use glam::{DAffine3, Vec3};
 
 use crate::bvh::Tree;
 use crate::offset::ROUNDING;
-use crate::{Bounds3, GeometryError, Instance, Ray, Surface, Tangents};
+use crate::surface::Located;
+use crate::{Bounds3, GeometryError, Instance, Ray, Tangents};
 
 /// An [`Instance`] and its inverse.
 #[derive(Clone, Copy, Debug)]
@@ -45,7 +46,7 @@ impl PlacedGroup {
     }
 
     /// Normals stay on the side of the surface on which they were, also where the placement mirrors.
-    pub fn surface_in_world(&self, surface: &Surface) -> Surface {
+    pub fn located_in_world(&self, surface: &Located) -> Located {
         let p = self.world_from_group.transform_point3(surface.p.as_dvec3()).as_vec3();
         let matrix = self.world_from_group.matrix3;
         let magnitude = |v: Vec3| -> Vec3 {
@@ -54,7 +55,7 @@ impl PlacedGroup {
         };
         let normal =
             |n: Vec3| (self.group_from_world.matrix3.transpose() * n.as_dvec3()).normalize().as_vec3();
-        Surface {
+        Located {
             p,
             // The next ray's origin is rounded once more on its way back into the group.
             p_error: magnitude(surface.p_error + 2.0 * ROUNDING * surface.p.abs()) + 2.0 * ROUNDING * p.abs(),

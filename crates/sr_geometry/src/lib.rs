@@ -27,7 +27,6 @@ mod surface;
 
 pub use bounds::Bounds3;
 pub use geometry::{Geometry, ShapeRef};
-pub use offset::offset_ray_origin;
 pub use ray::{Hit, NO_INSTANCE, Ray, ShapeId};
 pub use shape::{Disk, GeometryError, GeometryInput, Instance, MeshError, Shape, Sphere, TriangleMesh};
 pub use surface::{Surface, Tangents};

@@ -5,7 +5,8 @@ use std::f32::consts::{PI, TAU};
 use glam::{DVec3, Vec2, Vec3};
 
 use crate::offset::ROUNDING;
-use crate::{Ray, Sphere, Surface, Tangents};
+use crate::surface::Located;
+use crate::{Ray, Sphere, Tangents};
 
 impl Sphere {
     /// The smallest t in (0, `t_max`) at which the ray meets the sphere, from outside or inside.
@@ -28,14 +29,14 @@ impl Sphere {
     }
 
     /// The surface at the point closest to `near`, which lies close to it.
-    pub(crate) fn surface(&self, near: Vec3) -> Surface {
+    pub(crate) fn located(&self, near: Vec3) -> Located {
         let out = (near.as_dvec3() - self.center.as_dvec3()).try_normalize().unwrap_or(DVec3::Z).as_vec3();
         let p = self.center + self.radius * out;
         let ng = if self.flip_normals { -out } else { out };
         let local = self.frame.transpose() * out;
         let phi = local.y.atan2(local.x);
         let theta = local.x.hypot(local.y).atan2(local.z);
-        Surface {
+        Located {
             p,
             p_error: 2.0 * ROUNDING * p.abs() + Vec3::splat(8.0 * ROUNDING * self.radius),
             ng,

@@ -2,16 +2,17 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::offset::{ROUNDING, offset_ray_origin};
-use crate::{Geometry, Hit, Ray, ShapeId, ShapeRef};
+use crate::offset::{ROUNDING, clearance};
+use crate::{Geometry, Hit, NO_INSTANCE, Ray, ShapeId, ShapeRef};
 
 /// A point on a surface, in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surface {
     /// The point.
     pub p: Vec3,
-    /// How far from `p` the surface may be, on each axis: a bound of rounding errors, also of the next ray's test.
-    pub p_error: Vec3,
+    /// How far along the normal a ray starts that leaves the surface: a bound of rounding errors, also of the next
+    /// ray's test.
+    pub clearance: f32,
     /// Unit geometric normal, on the front.
     pub ng: Vec3,
     /// Unit shading normal, interpolated between vertices that have normals, else `ng`. As the file gives it: not
@@ -37,40 +38,77 @@ impl Surface {
     /// A ray without an end that leaves the surface to the side to which `direction` points.
     #[inline]
     pub fn spawn_ray(&self, direction: Vec3) -> Ray {
-        Ray::new(offset_ray_origin(self.p, self.p_error, self.ng, direction), direction)
+        Ray::new(self.origin_towards(direction), direction)
     }
 
     /// A ray that leaves the surface and ends just before `target`: whatever it hits hides the target.
     #[inline]
     pub fn spawn_ray_to(&self, target: Vec3) -> Ray {
-        let origin = offset_ray_origin(self.p, self.p_error, self.ng, target - self.p);
+        let origin = self.origin_towards(target - self.p);
         Ray { origin, direction: target - origin, t_max: 1.0 - SHADOW_SLACK }
+    }
+
+    #[inline]
+    fn origin_towards(&self, direction: Vec3) -> Vec3 {
+        self.p + self.ng * self.clearance.copysign(direction.dot(self.ng))
+    }
+}
+
+/// A [`Surface`] whose error is still known on each axis, so that it can be moved to another space.
+#[derive(Clone, Copy)]
+pub(crate) struct Located {
+    pub p: Vec3,
+    /// How far from `p` the surface may be, on each axis.
+    pub p_error: Vec3,
+    pub ng: Vec3,
+    pub ns: Vec3,
+    pub uv: Vec2,
+}
+
+impl Located {
+    #[inline(always)]
+    pub fn surface(self) -> Surface {
+        let Self { p, p_error, ng, ns, uv } = self;
+        Surface { p, clearance: clearance(p, p_error, ng), ng, ns, uv }
     }
 }
 
 impl Geometry {
     /// The surface at a hit of `ray`.
-    #[inline]
+    #[inline(always)]
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
-        let Some(instance) = self.placed(hit.instance) else {
-            return self.surface_in_group(ray, hit);
-        };
-        instance.surface_in_world(&self.surface_in_group(&instance.ray_in_group(ray), hit))
-    }
-
-    #[inline]
-    fn surface_in_group(&self, ray: &Ray, hit: &Hit) -> Surface {
         match self.shape_of(hit.shape) {
-            ShapeRef::Mesh => self.surface_of_triangle(hit.shape, hit.primitive, hit.b1, hit.b2),
-            ShapeRef::Sphere(sphere) => sphere.surface(ray.at(hit.t)),
-            ShapeRef::Disk(disk) => disk.surface(Vec2::new(hit.b1, hit.b2)),
+            ShapeRef::Mesh if hit.instance == NO_INSTANCE => {
+                self.located_on_triangle(hit.shape, hit.primitive, hit.b1, hit.b2).surface()
+            }
+            _ => self.surface_of_other(ray, hit),
         }
     }
 
+    /// Out of line, so that the way over triangles stays small.
+    #[inline(never)]
+    fn surface_of_other(&self, ray: &Ray, hit: &Hit) -> Surface {
+        let instance = self.placed(hit.instance);
+        let located = match self.shape_of(hit.shape) {
+            ShapeRef::Mesh => self.located_on_triangle(hit.shape, hit.primitive, hit.b1, hit.b2),
+            ShapeRef::Sphere(sphere) => {
+                let ray = instance.map_or(*ray, |instance| instance.ray_in_group(ray));
+                sphere.located(ray.at(hit.t))
+            }
+            ShapeRef::Disk(disk) => disk.located(Vec2::new(hit.b1, hit.b2)),
+        };
+        instance.map_or(located, |instance| instance.located_in_world(&located)).surface()
+    }
+
     /// The surface at barycentric coordinates of a triangle, in the space of its list.
-    #[inline]
     pub fn surface_of_triangle(&self, shape: ShapeId, triangle: u32, b1: f32, b2: f32) -> Surface {
-        let [p0, p1, p2] = self.triangle_vertices(shape, triangle);
+        self.located_on_triangle(shape, triangle, b1, b2).surface()
+    }
+
+    #[inline(always)]
+    fn located_on_triangle(&self, shape: ShapeId, triangle: u32, b1: f32, b2: f32) -> Located {
+        let corners = self.corners(shape, triangle);
+        let [p0, p1, p2] = corners.positions();
         let (e1, e2) = (p1 - p0, p2 - p0);
         let (m1, m2) = (b1 * e1, b2 * e2);
         let p = p0 + (m1 + m2);
@@ -79,13 +117,11 @@ impl Geometry {
         let p_error = ROUNDING * (2.0 * p.abs() + 4.0 * (m1.abs() + m2.abs()) + 4.0 * size);
         let ng = e1.cross(e2).normalize_or_zero();
         let b0 = 1.0 - b1 - b2;
-        let ns = self
-            .triangle_normals(shape, triangle)
+        let ns = corners
+            .normals()
             .map_or(ng, |[n0, n1, n2]| (b0 * n0 + b1 * n1 + b2 * n2).try_normalize().unwrap_or(ng));
-        let uv = self
-            .triangle_uvs(shape, triangle)
-            .map_or(Vec2::new(b1, b2), |[uv0, uv1, uv2]| b0 * uv0 + b1 * uv1 + b2 * uv2);
-        Surface { p, p_error, ng, ns, uv }
+        let uv = corners.uvs().map_or(Vec2::new(b1, b2), |[uv0, uv1, uv2]| b0 * uv0 + b1 * uv1 + b2 * uv2);
+        Located { p, p_error, ng, ns, uv }
     }
 
     /// Derivatives of position by texture coordinates at a surface and its hit. Not orthogonal, and of any length;
@@ -103,9 +139,10 @@ impl Geometry {
     }
 
     fn tangents_of_triangle(&self, shape: ShapeId, triangle: u32) -> Tangents {
-        let [p0, p1, p2] = self.triangle_vertices(shape, triangle);
+        let corners = self.corners(shape, triangle);
+        let [p0, p1, p2] = corners.positions();
         let (e1, e2) = (p1 - p0, p2 - p0);
-        let Some([uv0, uv1, uv2]) = self.triangle_uvs(shape, triangle) else {
+        let Some([uv0, uv1, uv2]) = corners.uvs() else {
             return Tangents { dpdu: e1, dpdv: e2 };
         };
         let (d1, d2) = (uv1 - uv0, uv2 - uv0);

@@ -12,7 +12,7 @@ fn at_an_edge(surface: &Surface, vertices: [Vec3; 3]) -> bool {
         let (a, b) = (vertices[i], vertices[(i + 1) % 3]);
         (surface.p - a).cross(b - a).length() / (b - a).length()
     };
-    (0..3).any(|i| distance(i) <= 4.0 * surface.p_error.length())
+    (0..3).any(|i| distance(i) <= 4.0 * surface.clearance)
 }
 
 /// Walks through the inside of a closed convex box. Every ray must hit, and never the flat side that it leaves

@@ -4,7 +4,7 @@
 
 use glam::Vec2;
 use sr_bsdf::{
-    AnyBsdf, AnyModel, Conductor, Dielectric, Diffuse, Mask, Microfacet, MicrofacetKind, Plastic,
+    AnyBsdf, AnyModel, Bsdf, Conductor, Dielectric, Diffuse, Mask, Microfacet, MicrofacetKind, Plastic,
     RoughConductor, RoughDielectric, RoughPlastic, RoughPlasticTables, SmoothCoat, ThinDielectric,
 };
 use sr_scene::{ColorInput, MaterialDesc, MaterialId, ScalarInput, TextureId};
@@ -191,44 +191,94 @@ impl Materials {
     /// The scattering model of one side at a surface coordinate.
     #[inline]
     pub(crate) fn bsdf(&self, side: &Side, uv: Vec2, textures: &Textures) -> AnyBsdf<'_> {
-        let model = self.any_model(&side.model, uv, textures);
-        match side.opacity {
-            None => AnyBsdf::Solid(model),
-            Some(opacity) => AnyBsdf::Masked(Mask::new(textures.scalar(opacity, uv).clamp(0.0, 1.0), model)),
-        }
+        self.with_bsdf(side, uv, textures, Keep)
     }
 
-    #[inline]
-    fn any_model(&self, model: &Model, uv: Vec2, textures: &Textures) -> AnyModel<'_> {
+    /// Calls `user` with the scattering model of one side at a surface coordinate, as the type that it is.
+    #[inline(always)]
+    pub(crate) fn with_bsdf<'a, U: BsdfUser<'a>>(
+        &'a self,
+        side: &Side,
+        uv: Vec2,
+        textures: &Textures,
+        user: U,
+    ) -> U::Out {
         let color = |input: ColorInput| textures.color(input, uv);
         let complex = |eta_k: Option<(ColorInput, ColorInput)>| eta_k.map(|(eta, k)| (color(eta), color(k)));
         let rough = |kind, alpha: [ScalarInput; 2]| {
             let [x, y] = alpha.map(|a| textures.scalar(a, uv));
             Microfacet::new(kind, x, y)
         };
-        match model {
-            Model::Diffuse(reflectance) => Diffuse::new(color(*reflectance)).into(),
-            Model::Dielectric { eta, colors: [r, t] } => Dielectric::new(*eta, color(*r), color(*t)).into(),
+        let user = WithHoles { opacity: side.opacity.map(|opacity| textures.scalar(opacity, uv)), user };
+        match &side.model {
+            Model::Diffuse(reflectance) => user.call(Diffuse::new(color(*reflectance))),
+            Model::Dielectric { eta, colors: [r, t] } => {
+                user.call(Dielectric::new(*eta, color(*r), color(*t)))
+            }
             Model::ThinDielectric { eta, colors: [r, t] } => {
-                ThinDielectric::new(*eta, color(*r), color(*t)).into()
+                user.call(ThinDielectric::new(*eta, color(*r), color(*t)))
             }
             Model::RoughDielectric { kind, alpha, eta, colors: [r, t] } => {
-                RoughDielectric::new(rough(*kind, *alpha), *eta, color(*r), color(*t)).into()
+                user.call(RoughDielectric::new(rough(*kind, *alpha), *eta, color(*r), color(*t)))
             }
             Model::Conductor { eta_k, reflectance } => {
-                Conductor::new(complex(*eta_k), color(*reflectance)).into()
+                user.call(Conductor::new(complex(*eta_k), color(*reflectance)))
             }
             Model::RoughConductor(metal) => {
                 let distribution = rough(metal.kind, metal.alpha);
-                RoughConductor::new(distribution, complex(metal.eta_k), color(metal.reflectance)).into()
+                user.call(RoughConductor::new(distribution, complex(metal.eta_k), color(metal.reflectance)))
             }
             Model::Plastic { coat, colors: [d, s], nonlinear } => {
-                Plastic::new(*coat, color(*d), color(*s), *nonlinear).into()
+                user.call(Plastic::new(*coat, color(*d), color(*s), *nonlinear))
             }
             Model::RoughPlastic { coat, colors: [d, s], nonlinear } => {
-                RoughPlastic::new(&self.coats[*coat as usize], color(*d), color(*s), *nonlinear).into()
+                user.call(RoughPlastic::new(&self.coats[*coat as usize], color(*d), color(*s), *nonlinear))
             }
         }
+    }
+}
+
+/// What is done with a scattering model of whatever type: compiled once for each, so that a vertex chooses among
+/// models once and not at every question.
+pub(crate) trait BsdfUser<'a> {
+    type Out;
+    fn call<B: Bsdf + Into<AnyModel<'a>>>(self, bsdf: B) -> Self::Out;
+    fn call_masked<B: Bsdf + Into<AnyModel<'a>>>(self, bsdf: Mask<B>) -> Self::Out;
+}
+
+/// Puts the model's holes, if it has any, around it.
+struct WithHoles<U> {
+    opacity: Option<f32>,
+    user: U,
+}
+
+impl<U> WithHoles<U> {
+    #[inline(always)]
+    fn call<'a, B: Bsdf + Into<AnyModel<'a>>>(self, bsdf: B) -> U::Out
+    where
+        U: BsdfUser<'a>,
+    {
+        match self.opacity {
+            None => self.user.call(bsdf),
+            Some(opacity) => self.user.call_masked(Mask::new(opacity, bsdf)),
+        }
+    }
+}
+
+/// Keeps the model, by value.
+struct Keep;
+
+impl<'a> BsdfUser<'a> for Keep {
+    type Out = AnyBsdf<'a>;
+
+    #[inline(always)]
+    fn call<B: Bsdf + Into<AnyModel<'a>>>(self, bsdf: B) -> AnyBsdf<'a> {
+        AnyBsdf::Solid(bsdf.into())
+    }
+
+    #[inline(always)]
+    fn call_masked<B: Bsdf + Into<AnyModel<'a>>>(self, bsdf: Mask<B>) -> AnyBsdf<'a> {
+        AnyBsdf::Masked(bsdf.map(Into::into))
     }
 }
 

@@ -94,6 +94,9 @@ pub enum Stop {
 /// A pass should take about this long: short enough to stop between, long enough to keep all threads busy.
 const PASS: Duration = Duration::from_millis(400);
 
+/// A pass may take up to this long to give each replicate a sample: shorter ones sum mostly zeros.
+const LONG_PASS: Duration = Duration::from_secs(4);
+
 /// Pixels that one task renders.
 const PIXELS_PER_TASK: usize = 64;
 
@@ -178,7 +181,9 @@ fn passes<I: Integrator, Q: Sequence>(
         film.push(left.start, sums, len, rejected)?;
         let seconds = began.elapsed().as_secs_f64().max(1e-9) / f64::from(len);
         cost = Some(seconds);
-        cap = (PASS.as_secs_f64() / seconds).clamp(1.0, f64::from(1 << 30)) as u32;
+        let samples_in =
+            |time: Duration| (time.as_secs_f64() / seconds).clamp(1.0, f64::from(1 << 30)) as u32;
+        cap = samples_in(PASS).max(samples_in(LONG_PASS).min(REPLICATES as u32));
         left.start += len;
         let report = PassReport {
             samples_done: left.start - samples.start,
@@ -201,6 +206,8 @@ struct Sampler<'a, I, Q> {
     height: u32,
     /// One independent sequence per replicate.
     sequences: [Q; REPLICATES],
+    #[cfg(target_arch = "x86_64")]
+    has_avx2: bool,
 }
 
 impl<'a, I: Integrator, Q: Sequence> Sampler<'a, I, Q> {
@@ -214,6 +221,12 @@ impl<'a, I: Integrator, Q: Sequence> Sampler<'a, I, Q> {
             width: settings.width,
             height: settings.height,
             sequences: std::array::from_fn(|r| sequence.replicate(r as u32)),
+            #[cfg(target_arch = "x86_64")]
+            has_avx2: is_x86_feature_detected!("avx2")
+                && is_x86_feature_detected!("fma")
+                && is_x86_feature_detected!("bmi1")
+                && is_x86_feature_detected!("bmi2")
+                && is_x86_feature_detected!("lzcnt"),
         }
     }
 
@@ -228,7 +241,7 @@ impl<'a, I: Integrator, Q: Sequence> Sampler<'a, I, Q> {
                     return;
                 }
                 let pixel = (task * PIXELS_PER_TASK + i) as u32;
-                let (sums, rejected_here) = self.pixel(pixel, first, len, &mut tree);
+                let (sums, rejected_here) = self.pixel_fast(pixel, first, len, &mut tree);
                 *pixel_sums = sums;
                 bad += rejected_here;
             }
@@ -237,8 +250,29 @@ impl<'a, I: Integrator, Q: Sequence> Sampler<'a, I, Q> {
         (!cancel.load(Ordering::Relaxed)).then(|| rejected.into_inner())
     }
 
+    /// [`Sampler::pixel`], compiled for the instruction set of this processor. The results are the same bits.
+    fn pixel_fast(&self, pixel: u32, first: u32, len: u32, tree: &mut PairwiseSum) -> (PixelSums, u64) {
+        #[cfg(target_arch = "x86_64")]
+        if self.has_avx2 {
+            #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt")]
+            fn pixel_avx2<I: Integrator, Q: Sequence>(
+                sampler: &Sampler<'_, I, Q>,
+                pixel: u32,
+                first: u32,
+                len: u32,
+                tree: &mut PairwiseSum,
+            ) -> (PixelSums, u64) {
+                sampler.pixel(pixel, first, len, tree)
+            }
+            // SAFETY: the features were detected.
+            return unsafe { pixel_avx2(self, pixel, first, len, tree) };
+        }
+        self.pixel(pixel, first, len, tree)
+    }
+
     /// One pixel of a pass: a pairwise sum over samples, in groups of one sample per replicate.
     /// Returns the sums, and how many samples were not finite.
+    #[inline(always)]
     fn pixel(&self, pixel: u32, first: u32, len: u32, tree: &mut PairwiseSum) -> (PixelSums, u64) {
         let window = self.window(pixel);
         let group = len.min(REPLICATES as u32);
@@ -266,7 +300,7 @@ impl<'a, I: Integrator, Q: Sequence> Sampler<'a, I, Q> {
         (tree.take_total(), rejected)
     }
 
-    #[inline]
+    #[inline(always)]
     fn sample(&self, pixel: u32, window: &FilterWindow, replicate: usize, index: u32) -> PathSample {
         let sequence = &self.sequences[replicate];
         let mut u = Cursor::new(sequence, SampleId { pixel, index });

@@ -1,14 +1,14 @@
 //! A path's vertex on a surface: where it is, which way it faces, how it scatters.
 //!
-//! In: a ray and its hit. Out: [`Vertex`], which speaks world-space directions to the integrator and
-//! local ones to the BSDF.
+//! In: a ray and its hit. Out: a [`Sight`], and with a scattering model a [`Vertex`], which speaks world-space
+//! directions to the integrator and local ones to the BSDF.
 
 use glam::{Vec2, Vec3};
-use sr_bsdf::{AnyBsdf, Bsdf, BsdfSample, Lobes};
+use sr_bsdf::{Bsdf, BsdfSample, Lobes};
 use sr_geometry::{Hit, Ray, Surface};
 use sr_scene::Rgb;
 
-use crate::material::Bump;
+use crate::material::{Bump, Side};
 use crate::scene::Scene;
 
 /// An orthonormal frame with `n` as its +Z.
@@ -21,7 +21,7 @@ struct Frame {
 
 impl Frame {
     /// Any tangents (Duff et al. 2017).
-    #[inline]
+    #[inline(always)]
     fn about(n: Vec3) -> Self {
         let (s, t) = n.any_orthonormal_pair();
         Self { s, t, n }
@@ -46,45 +46,50 @@ impl Frame {
     }
 }
 
-/// A surface point with its scattering model, and the direction the path came from.
+/// How a surface point is seen from where the path came from.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Vertex<'a> {
-    pub surface: Surface,
-    pub bsdf: AnyBsdf<'a>,
+pub(crate) struct Sight {
     frame: Frame,
+    /// Towards where the path came from, in the frame.
     wo: Vec3,
     /// The normal before a bump map tilted it: directions must lie on one side of both.
     untilted: Option<Vec3>,
 }
 
-impl<'a> Vertex<'a> {
-    /// The vertex at a hit, seen along `ray`.
-    #[inline]
-    pub fn new(scene: &'a Scene, ray: &Ray, hit: &Hit, surface: Surface) -> Self {
+impl Sight {
+    /// Of a hit, seen along `ray`, and the side of the material that is seen.
+    #[inline(always)]
+    pub fn new<'a>(scene: &'a Scene, ray: &Ray, hit: &Hit, surface: &Surface) -> (Self, &'a Side) {
         let material = scene.materials.get(scene.material_of(hit.shape));
         let wo = -ray.direction;
         let mut normal = surface.ns;
         if let Some(bump) = material.front.bump {
-            normal = tilted(scene, hit, &surface, bump);
+            normal = tilted(scene, hit, surface, bump);
         }
-        let (side, normal) = match &material.back {
-            Some(back) if wo.dot(normal) < 0.0 => (back, -normal),
-            _ => (&material.front, normal),
-        };
+        let mut side = &material.front;
+        if let Some(back) = &material.back
+            && wo.dot(normal) < 0.0
+        {
+            (side, normal) = (back, -normal);
+        }
         let frame = if side.is_anisotropic() {
-            Frame::along(normal, scene.geometry.tangents(&surface, hit).dpdu)
+            Frame::along(normal, scene.geometry.tangents(surface, hit).dpdu)
         } else {
             Frame::about(normal)
         };
-        Self {
-            bsdf: scene.materials.bsdf(side, surface.uv, &scene.textures),
-            wo: frame.to_local(wo),
-            frame,
-            untilted: side.bump.map(|_| surface.ns),
-            surface,
-        }
+        (Self { wo: frame.to_local(wo), frame, untilted: side.bump.map(|_| surface.ns) }, side)
     }
+}
 
+/// A surface point with its scattering model.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Vertex<'a, B> {
+    pub surface: &'a Surface,
+    pub sight: &'a Sight,
+    pub bsdf: &'a B,
+}
+
+impl<B: Bsdf> Vertex<'_, B> {
     #[inline]
     pub fn lobes(&self) -> Lobes {
         self.bsdf.lobes()
@@ -92,57 +97,57 @@ impl<'a> Vertex<'a> {
 
     /// The shading normal, on the viewer's side of a two-sided material.
     pub fn normal(&self) -> Vec3 {
-        self.frame.n
+        self.sight.frame.n
     }
 
     /// f · |cos θ| and the density with which the BSDF samples `wi`, a direction in world space.
-    #[inline]
+    #[inline(always)]
     pub fn eval(&self, wi: Vec3) -> (Rgb, f32) {
         if !self.is_consistent(wi) {
             return (Rgb::ZERO, 0.0);
         }
-        let local = self.frame.to_local(wi);
-        (self.bsdf.eval(self.wo, local) * local.z.abs(), self.bsdf.pdf(self.wo, local))
+        let local = self.sight.frame.to_local(wi);
+        (self.bsdf.eval(self.sight.wo, local) * local.z.abs(), self.bsdf.pdf(self.sight.wo, local))
     }
 
     /// f · |cos θ| for a direction in world space.
-    #[inline]
+    #[inline(always)]
     pub fn f_cos(&self, wi: Vec3) -> Rgb {
         if !self.is_consistent(wi) {
             return Rgb::ZERO;
         }
-        let local = self.frame.to_local(wi);
-        self.bsdf.eval(self.wo, local) * local.z.abs()
+        let local = self.sight.frame.to_local(wi);
+        self.bsdf.eval(self.sight.wo, local) * local.z.abs()
     }
 
     /// A direction in world space, as the BSDF samples it.
-    #[inline]
+    #[inline(always)]
     pub fn sample(&self, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
-        let mut s = self.bsdf.sample(self.wo, u_lobe, u)?;
-        s.wi = self.frame.to_world(s.wi);
+        let mut s = self.bsdf.sample(self.sight.wo, u_lobe, u)?;
+        s.wi = self.sight.frame.to_world(s.wi);
         (s.delta || self.is_consistent(s.wi)).then_some(s)
     }
 
     /// The cosine of a world-space direction with the shading normal.
     #[inline]
     pub fn cos(&self, wi: Vec3) -> f32 {
-        wi.dot(self.frame.n)
+        wi.dot(self.sight.frame.n)
     }
 
     /// A local direction in world space.
     #[inline]
     pub fn world_from_local(&self, local: Vec3) -> Vec3 {
-        self.frame.to_world(local)
+        self.sight.frame.to_world(local)
     }
 
     #[inline]
     fn is_consistent(&self, wi: Vec3) -> bool {
-        self.untilted.is_none_or(|ns| ns.dot(wi) * self.frame.n.dot(wi) * self.facing(ns) > 0.0)
+        self.sight.untilted.is_none_or(|ns| ns.dot(wi) * self.sight.frame.n.dot(wi) * self.facing(ns) > 0.0)
     }
 
     /// +1 if the frame's normal is on the side of `ns`, −1 if it was turned to the back.
     fn facing(&self, ns: Vec3) -> f32 {
-        ns.dot(self.frame.n).signum()
+        ns.dot(self.sight.frame.n).signum()
     }
 }
 

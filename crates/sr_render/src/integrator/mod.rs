@@ -65,13 +65,13 @@ pub struct FirstHit {
 
 impl FirstHit {
     #[inline]
-    fn new(vertex: &Vertex<'_>, distance: f32) -> Self {
+    fn new<B: Bsdf>(vertex: &Vertex<'_, B>, distance: f32) -> Self {
         Self { albedo: vertex.bsdf.albedo(), normal: vertex.normal(), depth: distance }
     }
 }
 
 /// Is nothing between a surface and the light that was sampled from it?
-#[inline]
+#[inline(always)]
 fn visible(scene: &Scene, from: &Surface, s: &LightSample) -> bool {
     let ray = match s.target {
         Target::Point(p) => from.spawn_ray_to(p),
@@ -81,12 +81,12 @@ fn visible(scene: &Scene, from: &Surface, s: &LightSample) -> bool {
 }
 
 /// Light from one of the lights that only light sampling can find.
-fn from_deltas(scene: &Scene, vertex: &Vertex<'_>, u_pick: f32) -> Rgb {
+fn from_deltas<B: Bsdf>(scene: &Scene, vertex: &Vertex<'_, B>, u_pick: f32) -> Rgb {
     let Some(s) = scene.lights.sample_delta(vertex.surface.p, u_pick, &scene.textures) else {
         return Rgb::ZERO;
     };
     let f_cos = vertex.f_cos(s.wi);
-    if f_cos == Rgb::ZERO || !visible(scene, &vertex.surface, &s) {
+    if f_cos == Rgb::ZERO || !visible(scene, vertex.surface, &s) {
         return Rgb::ZERO;
     }
     f_cos * s.radiance

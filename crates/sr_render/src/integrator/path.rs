@@ -3,14 +3,16 @@
 //! Kajiya (1986); multiple importance sampling after Veach & Guibas (1995).
 
 use glam::Vec3;
-use sr_geometry::Ray;
+use sr_bsdf::{AnyModel, Bsdf, BsdfSample, Mask};
+use sr_geometry::{Ray, Surface};
 use sr_sampling::{Cursor, Sequence, power_weight};
 use sr_scene::Rgb;
 
 use super::roulette::survive;
 use super::{FIRST_DIMENSION, FirstHit, Integrator, PathLimits, PathSample, from_deltas, visible};
+use crate::material::BsdfUser;
 use crate::scene::Scene;
-use crate::vertex::Vertex;
+use crate::vertex::{Sight, Vertex};
 
 /// Dimensions that a vertex uses: light choice, light (2), lobe, direction (2), roulette, delta light.
 const DIMENSIONS_PER_VERTEX: u32 = 8;
@@ -38,7 +40,7 @@ impl Sampled {
 }
 
 impl Integrator for PathTracer {
-    #[inline]
+    #[inline(always)]
     fn li<Q: Sequence>(&self, scene: &Scene, mut ray: Ray, u: &mut Cursor<'_, Q>) -> PathSample {
         let mut path = PathSample::default();
         let mut beta = Rgb::ONE;
@@ -68,25 +70,33 @@ impl Integrator for PathTracer {
                     path.li += beta * le * weight;
                 }
             }
-            let vertex = Vertex::new(scene, &ray, &hit, surface);
-            if depth == 0 {
-                path.first = Some(FirstHit::new(&vertex, hit.t));
-            }
+            let first = (depth == 0).then_some((&mut path.first, hit.t));
             depth += 1;
-            if depth >= self.limits.max_depth {
+            let ends = depth >= self.limits.max_depth;
+            if ends && first.is_none() {
                 break;
             }
 
+            let (sight, side) = Sight::new(scene, &ray, &hit, &surface);
             let dimension = FIRST_DIMENSION + (depth - 1) * DIMENSIONS_PER_VERTEX;
-            if vertex.lobes().smooth() {
-                path.li += beta * direct(scene, &vertex, dimension, u);
-            }
-
-            u.seek(dimension + 3);
-            let Some(s) = vertex.sample(u.next_1d(), u.next_2d()) else { break };
+            let mut direct = Rgb::ZERO;
+            let visit = Visit {
+                scene,
+                surface: &surface,
+                sight: &sight,
+                first,
+                ends,
+                dimension,
+                u,
+                direct: &mut direct,
+            };
+            let next = scene.materials.with_bsdf(side, surface.uv, &scene.textures, visit);
+            path.li += beta * direct;
+            let Some(s) = next else { break };
             beta *= s.weight;
             eta *= s.eta;
             if depth >= self.limits.roulette_depth {
+                u.seek(dimension + 6);
                 let Some(share) = survive(beta, eta, u.next_1d()) else { break };
                 beta *= share;
             }
@@ -97,10 +107,62 @@ impl Integrator for PathTracer {
     }
 }
 
+/// What is done at a vertex, whatever its scattering model: light is gathered, and a direction drawn to go on.
+struct Visit<'a, 'u, Q> {
+    scene: &'a Scene,
+    surface: &'a Surface,
+    sight: &'a Sight,
+    /// Where to note the first surface, and its distance.
+    first: Option<(&'a mut Option<FirstHit>, f32)>,
+    /// Is this the path's last vertex?
+    ends: bool,
+    dimension: u32,
+    u: &'a mut Cursor<'u, Q>,
+    /// Where to put the light that a sampled light sends to the vertex.
+    direct: &'a mut Rgb,
+}
+
+impl<'m, Q: Sequence> BsdfUser<'m> for Visit<'_, '_, Q> {
+    type Out = Option<BsdfSample>;
+
+    #[inline(always)]
+    fn call<B: Bsdf + Into<AnyModel<'m>>>(self, bsdf: B) -> Option<BsdfSample> {
+        self.visit(&bsdf)
+    }
+
+    #[inline(never)]
+    fn call_masked<B: Bsdf + Into<AnyModel<'m>>>(self, bsdf: Mask<B>) -> Option<BsdfSample> {
+        self.visit(&bsdf)
+    }
+}
+
+impl<Q: Sequence> Visit<'_, '_, Q> {
+    #[inline(always)]
+    fn visit<B: Bsdf>(self, bsdf: &B) -> Option<BsdfSample> {
+        let vertex = Vertex { surface: self.surface, sight: self.sight, bsdf };
+        if let Some((first, distance)) = self.first {
+            *first = Some(FirstHit::new(&vertex, distance));
+        }
+        if self.ends {
+            return None;
+        }
+        if vertex.lobes().smooth() {
+            *self.direct = direct(self.scene, &vertex, self.dimension, self.u);
+        }
+        self.u.seek(self.dimension + 3);
+        vertex.sample(self.u.next_1d(), self.u.next_2d())
+    }
+}
+
 /// Next-event estimation: light that one sampled light sends to the vertex.
-#[inline]
-fn direct<Q: Sequence>(scene: &Scene, vertex: &Vertex<'_>, dimension: u32, u: &mut Cursor<'_, Q>) -> Rgb {
-    let from = &vertex.surface;
+#[inline(always)]
+fn direct<B: Bsdf, Q: Sequence>(
+    scene: &Scene,
+    vertex: &Vertex<'_, B>,
+    dimension: u32,
+    u: &mut Cursor<'_, Q>,
+) -> Rgb {
+    let from = vertex.surface;
     let mut sum = Rgb::ZERO;
     u.seek(dimension);
     if let Some(s) = scene.lights.sample(from.p, u.next_1d(), u.next_2d(), &scene.textures) {

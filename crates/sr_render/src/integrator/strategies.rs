@@ -10,7 +10,8 @@
 //! Where a surface has delta lobes, half of the samples of a technique without `bsdf` are drawn by it.
 
 use glam::{Vec2, Vec3};
-use sr_geometry::Ray;
+use sr_bsdf::AnyBsdf;
+use sr_geometry::{Hit, Ray, Surface};
 use sr_sampling::warp::{CosineHemisphere, UniformHemisphere, UniformSphere};
 use sr_sampling::{Cursor, Distribution, Mixture, Sample, Sequence, SolidAngle};
 use sr_scene::Rgb;
@@ -20,7 +21,7 @@ use super::{FIRST_DIMENSION, FirstHit, Integrator, PathLimits, PathSample, from_
 use crate::light::SeenFrom;
 use crate::scene::Scene;
 use crate::strategy::{Basic, Density, MAX_TECHNIQUES, Strategy};
-use crate::vertex::Vertex;
+use crate::vertex::{Sight, Vertex};
 
 /// Dimensions of one technique: lobe or light, direction (2), and one to spare.
 const DIMENSIONS_PER_TECHNIQUE: u32 = 4;
@@ -39,9 +40,9 @@ pub struct StrategyTracer {
 /// One of the basic densities at a vertex, over world-space directions.
 #[derive(Clone, Copy, Debug)]
 enum Component<'a> {
-    Uniform(&'a Vertex<'a>),
-    Cosine(&'a Vertex<'a>),
-    Bsdf(&'a Vertex<'a>),
+    Uniform(&'a Vertex<'a, AnyBsdf<'a>>),
+    Cosine(&'a Vertex<'a, AnyBsdf<'a>>),
+    Bsdf(&'a Vertex<'a, AnyBsdf<'a>>),
     Light(SeenFrom<'a>),
 }
 
@@ -50,7 +51,7 @@ impl Distribution for Component<'_> {
     type Uniform = (f32, Vec2);
 
     fn sample(&self, (u_lobe, u): (f32, Vec2)) -> Option<Sample<SolidAngle>> {
-        let local = |vertex: &Vertex<'_>, s: Sample<SolidAngle>| {
+        let local = |vertex: &Vertex<'_, AnyBsdf<'_>>, s: Sample<SolidAngle>| {
             let value = vertex.world_from_local(s.value);
             Some(Sample { value, pdf: s.pdf })
         };
@@ -90,7 +91,7 @@ impl Distribution for Component<'_> {
 /// A technique at a vertex.
 type Technique<'a> = Mixture<Component<'a>, [(f32, Component<'a>); 4]>;
 
-fn technique<'a>(scene: &'a Scene, vertex: &'a Vertex<'a>, density: Density) -> Technique<'a> {
+fn technique<'a>(scene: &'a Scene, vertex: &'a Vertex<'a, AnyBsdf<'a>>, density: Density) -> Technique<'a> {
     let component = |basic| match basic {
         Basic::Uniform => Component::Uniform(vertex),
         Basic::Cosine => Component::Cosine(vertex),
@@ -112,7 +113,11 @@ struct Step {
 /// Draws a direction, delta lobes included.
 ///
 /// The component is picked by what is then used again for the direction: one well-spread pair for both.
-fn draw(technique: &Technique<'_>, vertex: &Vertex<'_>, (u_lobe, u): (f32, Vec2)) -> Option<Step> {
+fn draw(
+    technique: &Technique<'_>,
+    vertex: &Vertex<'_, AnyBsdf<'_>>,
+    (u_lobe, u): (f32, Vec2),
+) -> Option<Step> {
     let (&(probability, component), u_left) = technique.pick_and_reuse(u.x);
     let u = Vec2::new(u_left, u.y);
     let mut eta = 1.0;
@@ -149,7 +154,8 @@ impl Integrator for StrategyTracer {
         let mut eta = 1.0;
         let mut share = if self.limits.hide_emitters { Share::Nothing } else { Share::All };
         let mut depth = 0;
-        while let Some((le, vertex)) = self.arrive(scene, &ray, share, &mut path, beta, depth == 0) {
+        while let Some((le, arrival)) = self.arrive(scene, &ray, share, &mut path, beta, depth == 0) {
+            let vertex = arrival.vertex();
             path.li += beta * le;
             depth += 1;
             if depth >= self.limits.max_depth {
@@ -177,6 +183,25 @@ impl Integrator for StrategyTracer {
     }
 }
 
+/// A surface that a path has come to.
+struct Arrival<'a> {
+    surface: Surface,
+    sight: Sight,
+    bsdf: AnyBsdf<'a>,
+}
+
+impl<'a> Arrival<'a> {
+    fn new(scene: &'a Scene, ray: &Ray, hit: &Hit) -> Self {
+        let surface = scene.geometry.surface(ray, hit);
+        let (sight, side) = Sight::new(scene, ray, hit, &surface);
+        Self { bsdf: scene.materials.bsdf(side, surface.uv, &scene.textures), surface, sight }
+    }
+
+    fn vertex(&self) -> Vertex<'_, AnyBsdf<'a>> {
+        Vertex { surface: &self.surface, sight: &self.sight, bsdf: &self.bsdf }
+    }
+}
+
 impl StrategyTracer {
     /// Follows a ray to its end: the light found there, weighted, and the vertex. A ray that leaves the
     /// scene adds the environment to `path`.
@@ -188,34 +213,26 @@ impl StrategyTracer {
         path: &mut PathSample,
         beta: Rgb,
         is_first: bool,
-    ) -> Option<(Rgb, Vertex<'a>)> {
+    ) -> Option<(Rgb, Arrival<'a>)> {
         let Some(hit) = scene.geometry.intersect(ray) else {
             path.li += beta * scene.lights.environment(ray.direction, |p_light| self.weight(share, p_light));
             return None;
         };
-        let vertex = Vertex::new(scene, ray, &hit, scene.geometry.surface(ray, &hit));
+        let arrival = Arrival::new(scene, ray, &hit);
         if is_first {
-            path.first = Some(FirstHit::new(&vertex, hit.t));
+            path.first = Some(FirstHit::new(&arrival.vertex(), hit.t));
         }
-        Some((self.emission(scene, ray, &hit, &vertex, share), vertex))
+        Some((self.emission(scene, ray, &hit, &arrival.surface, share), arrival))
     }
 
     /// Light emitted by what a ray hit, as far as it belongs to the technique that drew the ray.
-    fn emission(
-        &self,
-        scene: &Scene,
-        ray: &Ray,
-        hit: &sr_geometry::Hit,
-        vertex: &Vertex<'_>,
-        share: Share,
-    ) -> Rgb {
+    fn emission(&self, scene: &Scene, ray: &Ray, hit: &Hit, surface: &Surface, share: Share) -> Rgb {
         let Some(light) = scene.light_of(hit.shape) else { return Rgb::ZERO };
         let p_light = match share {
-            Share::Technique { from, .. } => scene.lights.pdf_of_point(light, from, &vertex.surface),
+            Share::Technique { from, .. } => scene.lights.pdf_of_point(light, from, surface),
             Share::All | Share::Nothing => 0.0,
         };
-        scene.lights.emitted(light, &vertex.surface, -ray.direction, &scene.textures)
-            * self.weight(share, p_light)
+        scene.lights.emitted(light, surface, -ray.direction, &scene.textures) * self.weight(share, p_light)
     }
 
     fn weight(&self, share: Share, p_light: f32) -> f32 {
@@ -242,7 +259,7 @@ impl StrategyTracer {
     fn scatter<Q: Sequence>(
         &self,
         scene: &Scene,
-        vertex: &Vertex<'_>,
+        vertex: &Vertex<'_, AnyBsdf<'_>>,
         dimension: u32,
         u: &Cursor<'_, Q>,
         li: &mut Rgb,
@@ -294,7 +311,7 @@ impl StrategyTracer {
                 scene.lights.sample(vertex.surface.p, u_lobe, u_direction, &scene.textures)
             {
                 let f_cos = vertex.f_cos(s.wi);
-                if f_cos != Rgb::ZERO && visible(scene, &vertex.surface, &s) {
+                if f_cos != Rgb::ZERO && visible(scene, vertex.surface, &s) {
                     let weight = self.technique_weight(index, densities(s.wi), s.pdf);
                     *li += beta * f_cos * s.radiance * (weight / s.pdf);
                 }
@@ -321,10 +338,7 @@ impl StrategyTracer {
     fn light_along(&self, scene: &Scene, ray: &Ray, share: Share) -> Rgb {
         match scene.geometry.intersect(ray) {
             None => scene.lights.environment(ray.direction, |p_light| self.weight(share, p_light)),
-            Some(hit) => {
-                let vertex = Vertex::new(scene, ray, &hit, scene.geometry.surface(ray, &hit));
-                self.emission(scene, ray, &hit, &vertex, share)
-            }
+            Some(hit) => self.emission(scene, ray, &hit, &scene.geometry.surface(ray, &hit), share),
         }
     }
 }

@@ -149,7 +149,7 @@ impl AreaLight {
     ///
     /// Triangles and disks are sampled by area; a sphere seen from outside by the cone it fills
     /// (Shirley, Wang & Zimmerman 1996).
-    #[inline]
+    #[inline(always)]
     pub fn sample(&self, from: Vec3, u_pick: f32, u: Vec2, textures: &Textures) -> Option<LightSample> {
         let point = match &self.form {
             Form::Mesh { triangles, by_area } => {
@@ -186,6 +186,7 @@ impl AreaLight {
     }
 
     #[allow(clippy::too_many_arguments)]
+    #[inline(never)]
     fn sample_sphere(
         &self,
         center: Vec3,
@@ -201,7 +202,10 @@ impl AreaLight {
         } else {
             sphere::sample_cone(center, radius, from, u)?
         };
-        let radiance = textures.color(self.radiance, sphere::uv(frame, p - center));
+        let radiance = match self.radiance {
+            ColorInput::Constant(radiance) => radiance,
+            textured => textures.color(textured, sphere::uv(frame, p - center)),
+        };
         Some(LightSample { wi, radiance, pdf, target: Target::Point(p) })
     }
 

@@ -103,6 +103,7 @@ impl Environment {
     }
 
     /// A direction, in proportion to luminance. `None` from a black image.
+    #[inline(never)]
     pub fn sample(&self, u: Vec2) -> Option<LightSample> {
         let Sample { value: uv, pdf } = self.table.as_ref()?.sample(u)?;
         let (sin_theta, cos_theta) = (PI * uv.y).sin_cos();

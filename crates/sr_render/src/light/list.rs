@@ -131,7 +131,7 @@ impl Lights {
 
     /// Draws a direction from `from` to one extended light, chosen by `u_pick`. The density is that of
     /// reaching this light: choice times direction.
-    #[inline]
+    #[inline(always)]
     pub fn sample(&self, from: Vec3, u_pick: f32, u: Vec2, textures: &Textures) -> Option<LightSample> {
         let (index, pmf, u_pick) = self.extended_choice.sample(u_pick)?;
         let mut s = self.sample_one(LightId(index as u32), from, u_pick, u, textures)?;
@@ -140,6 +140,7 @@ impl Lights {
     }
 
     /// Draws a direction from `from` to a given extended light.
+    #[inline(always)]
     pub(crate) fn sample_one(
         &self,
         id: LightId,

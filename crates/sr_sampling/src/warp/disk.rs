@@ -14,16 +14,13 @@ use crate::measure::Plane;
 #[inline]
 pub fn concentric_disk(u: Vec2) -> Vec2 {
     let d = 2.0 * u - Vec2::ONE;
-    if d.x == 0.0 && d.y == 0.0 {
-        return Vec2::ZERO;
-    }
-    if d.x.abs() > d.y.abs() {
-        let (sin, cos) = sin_cos_eighth(FRAC_PI_4 * (d.y / d.x));
-        d.x * Vec2::new(cos, sin)
-    } else {
-        let (sin, cos) = sin_cos_eighth(FRAC_PI_4 * (d.x / d.y));
-        d.y * Vec2::new(sin, cos)
-    }
+    // Selections rather than branches: which octant it is cannot be guessed.
+    let is_wide = d.x.abs() > d.y.abs();
+    let (long, short) = if is_wide { (d.x, d.y) } else { (d.y, d.x) };
+    let slope = if long == 0.0 { 0.0 } else { short / long };
+    let (sin, cos) = sin_cos_eighth(FRAC_PI_4 * slope);
+    let (along, across) = (long * cos, long * sin);
+    if is_wide { Vec2::new(along, across) } else { Vec2::new(across, along) }
 }
 
 /// Sine and cosine of an angle in [−π/4, π/4], by their series up to the ninth power: to 3·10⁻⁸.
