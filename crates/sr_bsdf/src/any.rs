@@ -37,41 +37,71 @@ pub enum AnyBsdf<'a> {
     Masked(Mask<AnyModel<'a>>),
 }
 
-macro_rules! for_each_model {
-    ($self:expr, $model:ident => $call:expr) => {
-        match $self {
-            AnyModel::Diffuse($model) => $call,
-            AnyModel::Dielectric($model) => $call,
-            AnyModel::ThinDielectric($model) => $call,
-            AnyModel::RoughDielectric($model) => $call,
-            AnyModel::Conductor($model) => $call,
-            AnyModel::RoughConductor($model) => $call,
-            AnyModel::Plastic($model) => $call,
-            AnyModel::RoughPlastic($model) => $call,
-        }
-    };
-}
-
 impl Bsdf for AnyModel<'_> {
     #[inline]
     fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
-        for_each_model!(self, model => model.eval(wo, wi))
+        match self {
+            AnyModel::Diffuse(model) => model.eval(wo, wi),
+            AnyModel::Dielectric(model) => model.eval(wo, wi),
+            AnyModel::ThinDielectric(model) => model.eval(wo, wi),
+            AnyModel::RoughDielectric(model) => model.eval(wo, wi),
+            AnyModel::Conductor(model) => model.eval(wo, wi),
+            AnyModel::RoughConductor(model) => model.eval(wo, wi),
+            AnyModel::Plastic(model) => model.eval(wo, wi),
+            AnyModel::RoughPlastic(model) => model.eval(wo, wi),
+        }
     }
     #[inline]
     fn sample(&self, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
-        for_each_model!(self, model => model.sample(wo, u_lobe, u))
+        match self {
+            AnyModel::Diffuse(model) => model.sample(wo, u_lobe, u),
+            AnyModel::Dielectric(model) => model.sample(wo, u_lobe, u),
+            AnyModel::ThinDielectric(model) => model.sample(wo, u_lobe, u),
+            AnyModel::RoughDielectric(model) => model.sample(wo, u_lobe, u),
+            AnyModel::Conductor(model) => model.sample(wo, u_lobe, u),
+            AnyModel::RoughConductor(model) => model.sample(wo, u_lobe, u),
+            AnyModel::Plastic(model) => model.sample(wo, u_lobe, u),
+            AnyModel::RoughPlastic(model) => model.sample(wo, u_lobe, u),
+        }
     }
     #[inline]
     fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        for_each_model!(self, model => model.pdf(wo, wi))
+        match self {
+            AnyModel::Diffuse(model) => model.pdf(wo, wi),
+            AnyModel::Dielectric(model) => model.pdf(wo, wi),
+            AnyModel::ThinDielectric(model) => model.pdf(wo, wi),
+            AnyModel::RoughDielectric(model) => model.pdf(wo, wi),
+            AnyModel::Conductor(model) => model.pdf(wo, wi),
+            AnyModel::RoughConductor(model) => model.pdf(wo, wi),
+            AnyModel::Plastic(model) => model.pdf(wo, wi),
+            AnyModel::RoughPlastic(model) => model.pdf(wo, wi),
+        }
     }
     #[inline]
     fn lobes(&self) -> Lobes {
-        for_each_model!(self, model => model.lobes())
+        match self {
+            AnyModel::Diffuse(model) => model.lobes(),
+            AnyModel::Dielectric(model) => model.lobes(),
+            AnyModel::ThinDielectric(model) => model.lobes(),
+            AnyModel::RoughDielectric(model) => model.lobes(),
+            AnyModel::Conductor(model) => model.lobes(),
+            AnyModel::RoughConductor(model) => model.lobes(),
+            AnyModel::Plastic(model) => model.lobes(),
+            AnyModel::RoughPlastic(model) => model.lobes(),
+        }
     }
     #[inline]
     fn albedo(&self) -> Rgb {
-        for_each_model!(self, model => model.albedo())
+        match self {
+            AnyModel::Diffuse(model) => model.albedo(),
+            AnyModel::Dielectric(model) => model.albedo(),
+            AnyModel::ThinDielectric(model) => model.albedo(),
+            AnyModel::RoughDielectric(model) => model.albedo(),
+            AnyModel::Conductor(model) => model.albedo(),
+            AnyModel::RoughConductor(model) => model.albedo(),
+            AnyModel::Plastic(model) => model.albedo(),
+            AnyModel::RoughPlastic(model) => model.albedo(),
+        }
     }
 }
 
@@ -113,30 +143,66 @@ impl Bsdf for AnyBsdf<'_> {
     }
 }
 
-macro_rules! from_models {
-    ($($model:ident => $type:ty),* $(,)?) => {$(
-        impl<'a> From<$type> for AnyModel<'a> {
-            #[inline]
-            fn from(model: $type) -> Self {
-                AnyModel::$model(model)
-            }
-        }
-        impl<'a> From<$type> for AnyBsdf<'a> {
-            #[inline]
-            fn from(model: $type) -> Self {
-                AnyBsdf::Solid(AnyModel::$model(model))
-            }
-        }
-    )*};
+/// Whatever is a model is also a BSDF without holes.
+impl<'a, M: Into<AnyModel<'a>>> From<M> for AnyBsdf<'a> {
+    #[inline]
+    fn from(model: M) -> Self {
+        AnyBsdf::Solid(model.into())
+    }
 }
 
-from_models! {
-    Diffuse => Diffuse,
-    Dielectric => Dielectric,
-    ThinDielectric => ThinDielectric,
-    RoughDielectric => RoughDielectric,
-    Conductor => Conductor,
-    RoughConductor => RoughConductor,
-    Plastic => Plastic,
-    RoughPlastic => RoughPlastic<'a>,
+impl From<Diffuse> for AnyModel<'_> {
+    #[inline]
+    fn from(model: Diffuse) -> Self {
+        AnyModel::Diffuse(model)
+    }
+}
+
+impl From<Dielectric> for AnyModel<'_> {
+    #[inline]
+    fn from(model: Dielectric) -> Self {
+        AnyModel::Dielectric(model)
+    }
+}
+
+impl From<ThinDielectric> for AnyModel<'_> {
+    #[inline]
+    fn from(model: ThinDielectric) -> Self {
+        AnyModel::ThinDielectric(model)
+    }
+}
+
+impl From<RoughDielectric> for AnyModel<'_> {
+    #[inline]
+    fn from(model: RoughDielectric) -> Self {
+        AnyModel::RoughDielectric(model)
+    }
+}
+
+impl From<Conductor> for AnyModel<'_> {
+    #[inline]
+    fn from(model: Conductor) -> Self {
+        AnyModel::Conductor(model)
+    }
+}
+
+impl From<RoughConductor> for AnyModel<'_> {
+    #[inline]
+    fn from(model: RoughConductor) -> Self {
+        AnyModel::RoughConductor(model)
+    }
+}
+
+impl From<Plastic> for AnyModel<'_> {
+    #[inline]
+    fn from(model: Plastic) -> Self {
+        AnyModel::Plastic(model)
+    }
+}
+
+impl<'a> From<RoughPlastic<'a>> for AnyModel<'a> {
+    #[inline]
+    fn from(model: RoughPlastic<'a>) -> Self {
+        AnyModel::RoughPlastic(model)
+    }
 }

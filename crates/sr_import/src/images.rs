@@ -7,6 +7,7 @@ use image::{DynamicImage, ImageReader, Limits};
 use sr_scene::{Image, Pixels};
 
 use crate::files;
+use crate::jpeg;
 use crate::values::srgb_to_linear;
 
 /// Images of more texels are refused before anything is allocated.
@@ -29,12 +30,14 @@ pub fn load(path: &Path, decode: Decode) -> Result<Image, String> {
     let (width, height, pixels) = if bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
         open_exr(&bytes)?
     } else {
-        open_other(path, bytes, decode)?
+        let image =
+            if jpeg::is_jpeg(&bytes) { jpeg::decode(&bytes, MAX_TEXELS)? } else { open_other(path, bytes)? };
+        (image.width(), image.height(), convert(image, decode))
     };
     Ok(Image { name: path.display().to_string(), width, height, pixels })
 }
 
-fn open_other(path: &Path, bytes: Vec<u8>, decode: Decode) -> Result<(u32, u32, Pixels), String> {
+fn open_other(path: &Path, bytes: Vec<u8>) -> Result<DynamicImage, String> {
     let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
     if reader.format().is_none()
         && let Ok(format) = image::ImageFormat::from_path(path)
@@ -54,8 +57,7 @@ fn open_other(path: &Path, bytes: Vec<u8>, decode: Decode) -> Result<(u32, u32, 
     let decoder = reader.into_decoder().map_err(|e| e.to_string())?;
     let (width, height) = image::ImageDecoder::dimensions(&decoder);
     check_size(u64::from(width), u64::from(height))?;
-    let image = DynamicImage::from_decoder(decoder).map_err(|e| e.to_string())?;
-    Ok((width, height, convert(image, decode)))
+    DynamicImage::from_decoder(decoder).map_err(|e| e.to_string())
 }
 
 fn check_size(width: u64, height: u64) -> Result<(), String> {

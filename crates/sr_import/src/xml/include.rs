@@ -1,0 +1,90 @@
+//! `<include>` and `<path>`: other files, and where they are.
+
+use std::path::{Path, PathBuf};
+
+use sr_scene::{Diagnostic, Span};
+
+use super::elements::{self, Kind};
+use super::{MAX_DEPTH, Reader, read_text, syntax};
+use crate::files;
+use crate::node::Node;
+use crate::values::{Attributes, shown};
+
+/// More files are refused.
+const MAX_INCLUDES: usize = 256;
+
+/// The files that are being read.
+pub struct Includes {
+    /// The outermost first.
+    open: Vec<PathBuf>,
+    /// How many have been included so far.
+    count: usize,
+}
+
+impl Includes {
+    /// Only the scene itself is being read.
+    pub fn new(scene: &str) -> Self {
+        Self { open: vec![PathBuf::from(scene)], count: 0 }
+    }
+}
+
+impl Reader<'_> {
+    /// Reads another file as if its elements stood here.
+    pub(super) fn include(
+        &mut self,
+        attributes: &mut Attributes<'_, '_>,
+        node: &mut Node,
+        depth: usize,
+    ) -> Result<(), String> {
+        let path = files::find(attributes.required("filename")?, &self.directories);
+        self.includes.count += 1;
+        if self.includes.open.contains(&path) {
+            return Err(format!("{} includes itself", path.display()));
+        }
+        if self.includes.open.len() > MAX_DEPTH || self.includes.count > MAX_INCLUDES {
+            return Err(format!(
+                "more than {MAX_INCLUDES} files are included, or more than {MAX_DEPTH} within another"
+            ));
+        }
+        let text =
+            read_text(&path).map_err(|reason| format!("cannot include {}: {reason}", path.display()))?;
+        let source = self.diagnostics.sources.add(path.display().to_string(), &*text);
+        let document = match syntax::parse(source, &text) {
+            Ok(document) => document,
+            Err(diagnostic) => {
+                self.diagnostics.push(diagnostic);
+                return Ok(());
+            }
+        };
+        if let Some(parent) = path.parent().map(Path::to_owned)
+            && !self.directories.contains(&parent)
+        {
+            self.directories.push(parent);
+        }
+        self.includes.open.push(path);
+        let root = document.root_element();
+        if elements::kind(root.tag_name().name()) == Some(Kind::Scene) {
+            self.children(source, root, node, depth + 1);
+        } else {
+            self.element(source, root, node, depth + 1);
+        }
+        self.includes.open.pop();
+        Ok(())
+    }
+
+    /// Adds a directory to look for files in.
+    pub(super) fn path(&mut self, attributes: &mut Attributes<'_, '_>, span: &Span) -> Result<(), String> {
+        let name = attributes.required("value")?;
+        let directory = files::find(name, &self.directories);
+        if directory.is_dir() {
+            self.directories.push(directory);
+        } else {
+            let message = format!("\"{}\" is not a directory", shown(name));
+            self.diagnostics.push(
+                Diagnostic::warning("mitsuba::bad-path", span, message)
+                    .consequence("no file is looked for there"),
+            );
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,162 @@
+//! Materials: what each one holds, and how they are nested.
+
+use super::Check;
+use crate::diagnostic::{Diagnostic, Span};
+use crate::{ColorInput, MaterialDesc, MaterialId, ScalarInput};
+
+/// Materials nested deeper than this are an error.
+const MAX_MATERIAL_DEPTH: usize = 8;
+
+impl Check<'_> {
+    /// Ids in range, no cycle, nothing where it cannot be. False if the material cannot be looked into.
+    pub(super) fn nesting(&mut self, id: MaterialId, span: &Span, depth: usize) -> bool {
+        let Some(material) = self.scene.materials.get(id.0 as usize) else {
+            self.error("scene::bad-id", span, format!("there is no material {}", id.0));
+            return false;
+        };
+        if depth > MAX_MATERIAL_DEPTH {
+            self.error(
+                "scene::material-cycle",
+                span,
+                "this material contains itself, or is nested too deeply",
+            );
+            return false;
+        }
+        match *material {
+            MaterialDesc::TwoSided { front, back } => {
+                let sides = if front == back { vec![front] } else { vec![front, back] };
+                for side in sides {
+                    if !self.nesting(side, span, depth + 1) {
+                        return false;
+                    }
+                    if depth == 0 && self.transmits(side) {
+                        let message = "a two-sided material cannot hold one that transmits light";
+                        self.error("scene::twosided-transmission", span, message);
+                    }
+                }
+                true
+            }
+            MaterialDesc::Mask { inner, .. } | MaterialDesc::BumpMap { inner, .. } => {
+                self.nesting(inner, span, depth + 1)
+            }
+            _ => true,
+        }
+    }
+
+    fn transmits(&self, id: MaterialId) -> bool {
+        match self.scene.materials.get(id.0 as usize) {
+            Some(
+                MaterialDesc::Dielectric { .. }
+                | MaterialDesc::ThinDielectric { .. }
+                | MaterialDesc::RoughDielectric { .. }
+                | MaterialDesc::Mask { .. },
+            ) => true,
+            Some(MaterialDesc::BumpMap { inner, .. }) => self.transmits(*inner),
+            _ => false,
+        }
+    }
+
+    pub(super) fn material(&mut self, material: &MaterialDesc, span: &Span) {
+        match material {
+            MaterialDesc::Diffuse { reflectance } => self.albedo(reflectance, "reflectance", span),
+            MaterialDesc::Dielectric { eta, specular_reflectance, specular_transmittance }
+            | MaterialDesc::ThinDielectric { eta, specular_reflectance, specular_transmittance } => {
+                self.eta(*eta, span);
+                self.albedo(specular_reflectance, "specular_reflectance", span);
+                self.albedo(specular_transmittance, "specular_transmittance", span);
+            }
+            MaterialDesc::RoughDielectric {
+                alpha,
+                eta,
+                specular_reflectance,
+                specular_transmittance,
+                ..
+            } => {
+                alpha.iter().for_each(|a| self.alpha(a, span));
+                self.eta(*eta, span);
+                self.albedo(specular_reflectance, "specular_reflectance", span);
+                self.albedo(specular_transmittance, "specular_transmittance", span);
+            }
+            MaterialDesc::Conductor { eta_k, specular_reflectance } => {
+                self.complex_index(eta_k, span);
+                self.albedo(specular_reflectance, "specular_reflectance", span);
+            }
+            MaterialDesc::RoughConductor { alpha, eta_k, specular_reflectance, .. } => {
+                alpha.iter().for_each(|a| self.alpha(a, span));
+                self.complex_index(eta_k, span);
+                self.albedo(specular_reflectance, "specular_reflectance", span);
+            }
+            MaterialDesc::Plastic { eta, diffuse_reflectance, specular_reflectance, .. } => {
+                self.eta(*eta, span);
+                self.albedo(diffuse_reflectance, "diffuse_reflectance", span);
+                self.albedo(specular_reflectance, "specular_reflectance", span);
+            }
+            MaterialDesc::RoughPlastic { alpha, eta, diffuse_reflectance, specular_reflectance, .. } => {
+                self.alpha(&ScalarInput::Constant(*alpha), span);
+                self.eta(*eta, span);
+                self.albedo(diffuse_reflectance, "diffuse_reflectance", span);
+                self.albedo(specular_reflectance, "specular_reflectance", span);
+            }
+            MaterialDesc::TwoSided { .. } => {}
+            MaterialDesc::Mask { opacity, .. } => match *opacity {
+                ScalarInput::Constant(value) if !(0.0..=1.0).contains(&value) => {
+                    self.error(
+                        "scene::opacity",
+                        span,
+                        format!("an opacity of {value} is not between 0 and 1"),
+                    );
+                }
+                ScalarInput::Constant(_) => {}
+                ScalarInput::Texture(id) => self.texture_id(id, span),
+            },
+            MaterialDesc::BumpMap { scale, texture, .. } => {
+                self.texture_id(*texture, span);
+                if !scale.is_finite() {
+                    self.error("scene::not-finite", span, "the scale of a bump map is not finite");
+                }
+            }
+        }
+    }
+
+    fn albedo(&mut self, input: &ColorInput, what: &str, span: &Span) {
+        self.color_input(input, what, span);
+        if let ColorInput::Constant(color) = *input
+            && color.max_element() > 1.0
+            && color.is_finite()
+        {
+            let message =
+                format!("{what} is {}, {}, {}: more than 1 creates energy", color.x, color.y, color.z);
+            self.found.push(
+                Diagnostic::warning("scene::energy", span, message)
+                    .consequence("it is rendered as it is; paths may not end without a depth limit"),
+            );
+        }
+    }
+
+    fn alpha(&mut self, input: &ScalarInput, span: &Span) {
+        match *input {
+            ScalarInput::Constant(alpha) if !(alpha > 0.0 && alpha.is_finite()) => {
+                self.error("scene::alpha", span, format!("a roughness alpha of {alpha} is not positive"));
+            }
+            ScalarInput::Constant(_) => {}
+            ScalarInput::Texture(id) => self.texture_id(id, span),
+        }
+    }
+
+    fn eta(&mut self, eta: f32, span: &Span) {
+        if !(eta > 0.0 && eta.is_finite()) {
+            self.error(
+                "scene::index",
+                span,
+                format!("a relative index of refraction of {eta} is not positive"),
+            );
+        }
+    }
+
+    fn complex_index(&mut self, eta_k: &Option<(ColorInput, ColorInput)>, span: &Span) {
+        if let Some((eta, k)) = eta_k {
+            self.color_input(eta, "eta", span);
+            self.color_input(k, "k", span);
+        }
+    }
+}

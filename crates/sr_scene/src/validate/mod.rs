@@ -1,0 +1,111 @@
+//! What makes a description impossible to render, or unlike what its author can have meant.
+//!
+//! In: a [`SceneDesc`], however it was made. Out: diagnostics. A description without errors can be compiled
+//! without further checks: ids are in range, materials form a tree, every number is finite.
+
+mod camera;
+mod light;
+mod material;
+mod shape;
+
+use crate::diagnostic::{Diagnostic, Span};
+use crate::{ColorInput, MaterialId, Rgb, SceneDesc, TextureDesc, TextureId};
+
+pub use camera::MAX_FILM_PIXELS;
+
+/// Checks a whole description. `span_of` says where a material was described.
+pub fn validate(scene: &SceneDesc, span_of: impl Fn(MaterialId) -> Span) -> Vec<Diagnostic> {
+    let mut check = Check { scene, found: Vec::new() };
+    check.camera(&scene.camera);
+    for texture in &scene.textures {
+        check.texture(texture);
+    }
+    for index in 0..scene.materials.len() {
+        let id = MaterialId(index as u32);
+        let span = span_of(id);
+        if check.nesting(id, &span, 0) {
+            check.material(&scene.materials[index], &span);
+        }
+    }
+    for shape in &scene.shapes {
+        check.shape(shape);
+    }
+    for group in &scene.groups {
+        for shape in &group.shapes {
+            check.shape(shape);
+            if shape.emission.is_some() {
+                check.error("scene::emitter-in-group", &shape.span, "a shape of a group cannot emit");
+            }
+        }
+    }
+    for instance in &scene.instances {
+        if instance.group as usize >= scene.groups.len() {
+            check.error("scene::bad-id", &instance.span, format!("there is no group {}", instance.group));
+        }
+        let m = instance.world_from_group;
+        if !m.is_finite() || m.matrix3.determinant() == 0.0 {
+            check.error(
+                "scene::bad-transform",
+                &instance.span,
+                "the placement of an instance is not invertible",
+            );
+        }
+    }
+    for light in &scene.lights {
+        check.light(light);
+    }
+    check.found
+}
+
+struct Check<'a> {
+    scene: &'a SceneDesc,
+    found: Vec<Diagnostic>,
+}
+
+impl Check<'_> {
+    fn error(&mut self, code: &'static str, span: &Span, message: impl Into<String>) {
+        self.found.push(Diagnostic::error(code, span, message));
+    }
+
+    fn texture(&mut self, texture: &TextureDesc) {
+        let (to_uv, span) = match texture {
+            TextureDesc::Bitmap { image, to_uv, span, .. } => {
+                if *image as usize >= self.scene.images.len() {
+                    self.error("scene::bad-id", span, format!("there is no image {image}"));
+                }
+                (to_uv, span)
+            }
+            TextureDesc::Checkerboard { color0, color1, to_uv, span } => {
+                self.color(*color0, "color0", span);
+                self.color(*color1, "color1", span);
+                (to_uv, span)
+            }
+        };
+        if !to_uv.is_finite() {
+            self.error("scene::bad-transform", span, "the transform of texture coordinates is not finite");
+        }
+    }
+
+    fn texture_id(&mut self, id: TextureId, span: &Span) {
+        if id.0 as usize >= self.scene.textures.len() {
+            self.error("scene::bad-id", span, format!("there is no texture {}", id.0));
+        }
+    }
+
+    fn color_input(&mut self, input: &ColorInput, what: &str, span: &Span) {
+        match *input {
+            ColorInput::Constant(color) => self.color(color, what, span),
+            ColorInput::Texture(id) => self.texture_id(id, span),
+        }
+    }
+
+    fn color(&mut self, color: Rgb, what: &str, span: &Span) {
+        if !(color.is_finite() && color.min_element() >= 0.0) {
+            let message = format!(
+                "{what} is {}, {}, {}: a color has no negative or infinite parts",
+                color.x, color.y, color.z
+            );
+            self.error("scene::bad-color", span, message);
+        }
+    }
+}
