@@ -4,7 +4,9 @@ mod common;
 
 use common::{OwnedMesh, Random, closed_box};
 use glam::{Affine3A, Quat, Vec3};
-use sr_geometry::{Disk, Geometry, GeometryInput, Hit, Instance, NO_INSTANCE, Ray, Shape, Sphere, Surface};
+use sr_geometry::{
+    Disk, Geometry, GeometryInput, Hit, Instance, NO_INSTANCE, Ray, Shape, ShapeId, Sphere, Surface,
+};
 
 /// Is `surface` so near an edge of the triangle that rounding may have put it outside a neighbouring side?
 fn at_an_edge(surface: &Surface, vertices: [Vec3; 3]) -> bool {
@@ -79,6 +81,42 @@ fn boxes_at_many_scales() {
         }
     }
     assert!(lost < 50, "{lost} of 480000");
+}
+
+/// A flat rectangle of strips, each as long as all of it: a ray that leaves one meets none.
+#[test]
+fn strips_do_not_hide_one_another() {
+    let mut random = Random(25);
+    for aspect in [10.0, 300.0, 5000.0] {
+        for strips in [1_u32, 8, 100] {
+            let turn = Quat::from_axis_angle(random.direction(), random.unit());
+            let at = 5.0 * random.cube();
+            let mut mesh = OwnedMesh::default();
+            let corner = |i: u32, y: f32| Vec3::new(i as f32 * 4.0 / aspect, 4.0 * y, 0.0);
+            for i in 0..strips {
+                let [a, b, c, d] = [corner(i, 0.0), corner(i + 1, 0.0), corner(i + 1, 1.0), corner(i, 1.0)];
+                mesh.push([a, b, c]);
+                mesh.push([a, c, d]);
+            }
+            let geometry = mesh.transformed(|p| turn * p + at).build();
+            for _ in 0..20_000 {
+                let triangle = random.below(2 * strips as usize) as u32;
+                let (u, v) = (random.unit(), random.unit());
+                let (b1, b2) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
+                let surface = geometry.surface_of_triangle(ShapeId(0), triangle, b1, b2);
+                let up = surface.ng + 0.95 * random.direction();
+                for direction in [up, -up] {
+                    let ray = surface.spawn_ray(direction);
+                    let met = geometry.intersect(&ray);
+                    assert!(
+                        met.is_none(),
+                        "aspect {aspect}, {strips} strips: {ray:?} left {triangle}, met {met:?}"
+                    );
+                    assert!(!geometry.occluded(&ray));
+                }
+            }
+        }
+    }
 }
 
 #[test]

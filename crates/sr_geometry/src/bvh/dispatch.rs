@@ -70,9 +70,9 @@ fn meet<S: Simd, L: Lanes, const ANY: bool>(
 ) -> bool {
     match tree.form {
         Form::Nodes(root) => walk::<_, ANY>(eight, bvh, (root, &tree.bounds), ray, meet_other, closest),
-        Form::Few { first, count } => {
+        Form::Few { first, count, extent } => {
             let blocks = &bvh.few[first as usize..][..(count as usize).div_ceil(WIDE)];
-            scan::<_, ANY>(few, blocks, count as usize, ray, closest)
+            scan::<_, ANY>(few, (blocks, count as usize, extent), ray, closest)
         }
     }
 }

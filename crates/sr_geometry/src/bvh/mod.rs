@@ -163,6 +163,11 @@ impl<const N: usize> TriangleBlock<N> {
         block
     }
 
+    /// The vertices of one of the triangles.
+    fn triangle(&self, lane: usize) -> [Vec3; 3] {
+        self.vertices.map(|vertex| Vec3::from_array(vertex.map(|axis| axis[lane % N])))
+    }
+
     /// The hit of one of the triangles.
     #[inline(always)]
     fn hit(&self, lane: usize, t: f32, [b1, b2]: [f32; 2]) -> Hit {
@@ -183,13 +188,14 @@ pub(crate) struct Tree {
 enum Form {
     /// Below a node.
     Nodes(NodeRef),
-    /// As `count` triangles in wide blocks from `first` on, without nodes.
-    Few { first: u32, count: u32 },
+    /// As `count` triangles in wide blocks from `first` on, without nodes; `extent` is the longest side of their box.
+    Few { first: u32, count: u32, extent: f32 },
 }
 
 impl Tree {
     /// The tree without primitives.
-    pub const EMPTY: Self = Self { form: Form::Few { first: 0, count: 0 }, bounds: Bounds3::EMPTY };
+    pub const EMPTY: Self =
+        Self { form: Form::Few { first: 0, count: 0, extent: 0.0 }, bounds: Bounds3::EMPTY };
 }
 
 /// The arrays that all trees share.
@@ -217,7 +223,8 @@ impl Bvh {
     ) -> Tree {
         let bounds = prims.par_iter().map(|p| p.bounds).reduce(|| Bounds3::EMPTY, Bounds3::union);
         if prims.len() <= FEW && prims.iter().all(PrimRef::is_triangle) {
-            let form = Form::Few { first: self.few.len() as u32, count: prims.len() as u32 };
+            let (first, count) = (self.few.len() as u32, prims.len() as u32);
+            let form = Form::Few { first, count, extent: (bounds.max - bounds.min).max_element() };
             self.few.extend(prims.chunks(WIDE).map(|prims| TriangleBlock::new(prims, &vertices_of)));
             return Tree { form, bounds };
         }

@@ -4,13 +4,17 @@
 //! sheared so that the ray becomes the +Z axis; a vertex lands on the same point for every triangle that shares it,
 //! and the sign of an edge function is never wrong, so no ray slips between neighbours.
 
-use glam::Vec3A;
+use glam::{Vec3, Vec3A};
 
 use super::simd::Lanes;
 use crate::Ray;
 
 /// Rounding error of a sheared vertex, per unit of its distance from the ray's origin (largest component).
 pub(super) const SHEAR_SLACK: f32 = 5.0 * f32::EPSILON;
+
+/// Hits nearer than this part of what the triangle spans along the ray are looked at twice. Errors are larger only for
+/// triangles that are seen ten thousand times longer than wide.
+const NEAR: f32 = 1.0 / 64.0;
 
 /// An order of the axes; the fourth is none.
 #[repr(align(16))]
@@ -31,6 +35,9 @@ pub(super) trait Triangles<L: Lanes> {
     /// # Safety
     /// `vertex` and `axis` are below 3.
     unsafe fn coordinate(&self, lanes: L, vertex: usize, axis: usize) -> L::F;
+
+    /// One of the triangles.
+    fn vertices(&self, lane: usize) -> [Vec3; 3];
 }
 
 /// A ray, ready to meet triangles.
@@ -41,6 +48,8 @@ pub(super) struct Sheared<L: Lanes> {
     origin: [L::F; 3],
     /// What z is multiplied by: shears of the first two axes, and the scale of the last.
     shear: [L::F; 3],
+    /// [`NEAR`] times the scale, which is positive here.
+    near: L::F,
 }
 
 /// Triangles as a ray sees them.
@@ -78,6 +87,7 @@ impl<L: Lanes> Sheared<L> {
             axes: [order.0[0] as usize, order.0[1] as usize, order.0[2] as usize],
             origin: [lanes.splat(origin.x), lanes.splat(origin.y), lanes.splat(origin.z)],
             shear: [lanes.splat(along.x * scale), lanes.splat(along.y * scale), lanes.splat(scale)],
+            near: lanes.splat(NEAR * scale.abs()),
         }
     }
 
@@ -95,9 +105,10 @@ impl<L: Lanes> Sheared<L> {
         Projected { inside, areas, z: [a[2], b[2], c[2]] }
     }
 
-    /// Which triangles the ray meets in (0, `t_max`).
+    /// Which triangles the ray meets in (0, `t_max`), as far as rounding lets one tell: near the vertices' plane t can
+    /// be wrong by more than its value, and a sliver that the ray leaves be met.
     #[inline(always)]
-    pub fn meet(&self, lanes: L, seen: &Projected<L>, t_max: L::F) -> Meets<L> {
+    pub fn meet_roughly(&self, lanes: L, seen: &Projected<L>, t_max: L::F) -> Meets<L> {
         let [of_a, of_b, of_c] = seen.areas;
         // An edge-on triangle has a zero determinant, hence t = NaN, which fails both comparisons.
         let inv_det = lanes.div(lanes.splat(1.0), lanes.add(lanes.add(of_a, of_b), of_c));
@@ -107,6 +118,40 @@ impl<L: Lanes> Sheared<L> {
         let t = lanes.mul(z, self.shear[2]);
         let within = lanes.and(lanes.lt(lanes.splat(0.0), t), lanes.lt(t, t_max));
         Meets { hit: lanes.and(seen.inside, within), t, b: [b1, b2] }
+    }
+
+    /// Which triangles the ray meets in (0, `t_max`).
+    #[inline(always)]
+    pub fn meet(
+        &self,
+        lanes: L,
+        (ray, triangles): (&Ray, &impl Triangles<L>),
+        seen: &Projected<L>,
+        t_max: L::F,
+    ) -> Meets<L> {
+        let meets = self.meet_roughly(lanes, seen, t_max);
+        let first = lanes.min(lanes.min(seen.z[0], seen.z[1]), seen.z[2]);
+        let last = lanes.max(lanes.max(seen.z[0], seen.z[1]), seen.z[2]);
+        let near = lanes.mul(lanes.sub(last, first), self.near);
+        let mut doubtful = lanes.bits(lanes.and(meets.hit, lanes.lt(meets.t, near)));
+        if doubtful == 0 {
+            return meets;
+        }
+        let mut hit = lanes.bits(meets.hit);
+        while doubtful != 0 {
+            let lane = doubtful.trailing_zeros();
+            if !is_ahead(ray, triangles.vertices(lane as usize % L::COUNT)) {
+                hit &= !(1 << lane);
+            }
+            doubtful &= doubtful - 1;
+        }
+        Meets { hit: lanes.mask(hit), ..meets }
+    }
+
+    /// Nothing that is met at this t or beyond, of triangles that together span `extent`, needs a second look.
+    #[inline(always)]
+    pub fn beyond_doubt(&self, lanes: L, extent: f32) -> L::F {
+        lanes.mul(self.near, lanes.splat(extent))
     }
 
     /// A vertex relative to the ray: sheared x and y, and unscaled z.
@@ -126,6 +171,17 @@ impl<L: Lanes> Sheared<L> {
         let z = lanes.sub(z, self.origin[2]);
         [lanes.sub(x, lanes.mul(self.shear[0], z)), lanes.sub(y, lanes.mul(self.shear[1], z)), z]
     }
+}
+
+/// Does the ray meet the plane of a triangle ahead of its origin? In `f64`, where the sign of t is right also for a
+/// sliver.
+#[cold]
+#[inline(never)]
+fn is_ahead(ray: &Ray, [a, b, c]: [Vec3; 3]) -> bool {
+    let [a, b, c] = [a, b, c].map(|v| v.as_dvec3());
+    let normal = (b - a).cross(c - a);
+    let (height, descent) = (normal.dot(a - ray.origin.as_dvec3()), normal.dot(ray.direction.as_dvec3()));
+    height * descent > 0.0
 }
 
 /// Twice the signed area between the ray and the projected edge from `q` to `p`.

@@ -55,7 +55,7 @@ fn check_tree(triangles: &[[Vec3; 3]]) -> usize {
     let mut found = Vec::new();
     let depth = match tree.form {
         Form::Nodes(root) => visit(&bvh, root, &tree.bounds, &mut found),
-        Form::Few { first, count } => {
+        Form::Few { first, count, .. } => {
             let triangle = |i: usize| bvh.few[first as usize + i / WIDE].primitive[i % WIDE];
             found.extend((0..count as usize).map(triangle));
             0

@@ -2,7 +2,7 @@
 
 use std::mem::MaybeUninit;
 
-use glam::Vec3A;
+use glam::{Vec3, Vec3A};
 
 use super::sheared::{Meets, Sheared, Triangles};
 use super::simd::{LANE, Simd};
@@ -70,7 +70,7 @@ pub(super) fn walk<S: Simd, const ANY: bool>(
             if simd.bits(seen.inside) == 0 {
                 continue;
             }
-            let meets = sheared.meet(simd, &seen, t_max);
+            let meets = sheared.meet(simd, (ray, block), &seen, t_max);
             let hit = simd.bits(meets.hit);
             if hit != 0 {
                 if ANY {
@@ -123,6 +123,10 @@ impl<S: Simd> Triangles<S> for TriangleBlock<WIDTH> {
     unsafe fn coordinate(&self, simd: S, vertex: usize, axis: usize) -> S::F {
         // SAFETY: the caller's promise.
         simd.load(unsafe { self.vertices.get_unchecked(vertex).get_unchecked(axis) })
+    }
+
+    fn vertices(&self, lane: usize) -> [Vec3; 3] {
+        self.triangle(lane)
     }
 }
 

@@ -107,6 +107,14 @@ impl Lanes for Avx2 {
         avx2!(_mm256_movemask_ps(mask) as u32)
     }
     #[inline(always)]
+    fn mask(self, bits: u32) -> Self::Mask {
+        avx2!({
+            let lane = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+            let set = _mm256_and_si256(_mm256_set1_epi32(bits as i32), lane);
+            _mm256_castsi256_ps(_mm256_cmpeq_epi32(set, lane))
+        })
+    }
+    #[inline(always)]
     fn select(self, mask: Self::Mask, a: Self::F, b: Self::F) -> Self::F {
         avx2!(_mm256_blendv_ps(b, a, mask))
     }

@@ -101,6 +101,10 @@ impl Lanes for Avx512 {
         mask.into()
     }
     #[inline(always)]
+    fn mask(self, bits: u32) -> Self::Mask {
+        bits as u16
+    }
+    #[inline(always)]
     fn select(self, mask: Self::Mask, a: Self::F, b: Self::F) -> Self::F {
         avx512!(_mm512_mask_blend_ps(mask, b, a))
     }

@@ -51,6 +51,8 @@ pub(super) trait Lanes: Copy {
     fn or(self, a: Self::Mask, b: Self::Mask) -> Self::Mask;
     /// Bit i: is lane i set?
     fn bits(self, mask: Self::Mask) -> u32;
+    /// The lanes whose bits are set.
+    fn mask(self, bits: u32) -> Self::Mask;
     /// a[i] where the mask is set, else b[i].
     fn select(self, mask: Self::Mask, a: Self::F, b: Self::F) -> Self::F;
     /// The smallest lane. None may be NaN.

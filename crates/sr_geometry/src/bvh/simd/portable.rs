@@ -82,6 +82,10 @@ impl Lanes for Portable {
         (0..WIDTH).fold(0, |bits, i| bits | u32::from(mask[i]) << i)
     }
     #[inline(always)]
+    fn mask(self, bits: u32) -> Self::Mask {
+        each(|i| bits >> i & 1 != 0)
+    }
+    #[inline(always)]
     fn select(self, mask: Self::Mask, a: Self::F, b: Self::F) -> Self::F {
         each(|i| if mask[i] { a[i] } else { b[i] })
     }
