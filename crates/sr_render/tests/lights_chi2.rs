@@ -30,7 +30,7 @@ fn samples_follow_their_densities() {
         .iter()
         .zip(1..)
         .filter_map(|((name, scene, only, from), seed)| {
-            let seen = scene.lights().seen_from(*from, *only, scene.textures());
+            let seen = scene.lights().seen_from(*from, *only);
             let report = chi2::sphere(&seen, Chi2Settings { samples: 1 << 16, bins: (16, 32), seed });
             (!report.passes(level)).then(|| format!("{name}, light {only:?} from {from}: {report}"))
         })

@@ -15,7 +15,7 @@ use sr_geometry::{Ray, Surface};
 use sr_sampling::{Cursor, Sequence};
 use sr_scene::Rgb;
 
-use crate::light::{LightSample, Target};
+use crate::light::Target;
 use crate::scene::Scene;
 use crate::vertex::Vertex;
 use sr_bsdf::Bsdf;
@@ -72,10 +72,10 @@ impl FirstHit {
 
 /// Is nothing between a surface and the light that was sampled from it?
 #[inline(always)]
-fn visible(scene: &Scene, from: &Surface, s: &LightSample) -> bool {
-    let ray = match s.target {
+fn visible(scene: &Scene, from: &Surface, wi: Vec3, target: Target) -> bool {
+    let ray = match target {
         Target::Point(p) => from.spawn_ray_to(p),
-        Target::Infinity => from.spawn_ray(s.wi),
+        Target::Infinity => from.spawn_ray(wi),
     };
     !scene.geometry.occluded(&ray)
 }
@@ -86,7 +86,7 @@ fn from_deltas<B: Bsdf>(scene: &Scene, vertex: &Vertex<'_, B>, u_pick: f32) -> R
         return Rgb::ZERO;
     };
     let f_cos = vertex.f_cos(s.wi);
-    if f_cos == Rgb::ZERO || !visible(scene, vertex.surface, &s) {
+    if f_cos == Rgb::ZERO || !visible(scene, vertex.surface, s.wi, s.target) {
         return Rgb::ZERO;
     }
     f_cos * s.radiance

@@ -165,10 +165,11 @@ fn direct<B: Bsdf, Q: Sequence>(
     let from = vertex.surface;
     let mut sum = Rgb::ZERO;
     u.seek(dimension);
-    if let Some(s) = scene.lights.sample(from.p, u.next_1d(), u.next_2d(), &scene.textures) {
+    if let Some(s) = scene.lights.sample(from.p, u.next_1d(), u.next_2d()) {
         let (f_cos, p_bsdf) = vertex.eval(s.wi);
-        if f_cos != Rgb::ZERO && visible(scene, from, &s) {
-            sum += f_cos * s.radiance * (power_weight(s.pdf, p_bsdf) / s.pdf);
+        if f_cos != Rgb::ZERO && visible(scene, from, s.wi, s.target) {
+            let radiance = scene.lights.radiance(&s, &scene.textures);
+            sum += f_cos * radiance * (power_weight(s.pdf, p_bsdf) / s.pdf);
         }
     }
     if scene.lights.has_deltas() {

@@ -96,7 +96,7 @@ fn technique<'a>(scene: &'a Scene, vertex: &'a Vertex<'a, AnyBsdf<'a>>, density:
         Basic::Uniform => Component::Uniform(vertex),
         Basic::Cosine => Component::Cosine(vertex),
         Basic::Bsdf => Component::Bsdf(vertex),
-        Basic::Light => Component::Light(scene.lights.seen_from(vertex.surface.p, None, &scene.textures)),
+        Basic::Light => Component::Light(scene.lights.seen_from(vertex.surface.p, None)),
     };
     Mixture::new(Basic::ALL.map(|basic| (density.weight(basic), component(basic))))
         .expect("a Density's weights sum to 1")
@@ -307,13 +307,12 @@ impl StrategyTracer {
                 let share = Share::Technique { from: vertex.surface.p, index, densities: densities(step.wi) };
                 *li +=
                     beta * step.weight * self.light_along(scene, &vertex.surface.spawn_ray(step.wi), share);
-            } else if let Some(s) =
-                scene.lights.sample(vertex.surface.p, u_lobe, u_direction, &scene.textures)
-            {
+            } else if let Some(s) = scene.lights.sample(vertex.surface.p, u_lobe, u_direction) {
                 let f_cos = vertex.f_cos(s.wi);
-                if f_cos != Rgb::ZERO && visible(scene, vertex.surface, &s) {
+                if f_cos != Rgb::ZERO && visible(scene, vertex.surface, s.wi, s.target) {
                     let weight = self.technique_weight(index, densities(s.wi), s.pdf);
-                    *li += beta * f_cos * s.radiance * (weight / s.pdf);
+                    let radiance = scene.lights.radiance(&s, &scene.textures);
+                    *li += beta * f_cos * radiance * (weight / s.pdf);
                 }
             }
         }

@@ -7,7 +7,7 @@ use sr_sampling::warp::{barycentrics, concentric_disk};
 use sr_sampling::{AliasTable, to_solid_angle};
 use sr_scene::{ColorInput, Rgb};
 
-use super::{LightSample, Target};
+use super::{LightId, LightSample, Target};
 use crate::texture::Textures;
 
 /// A shape that emits.
@@ -150,7 +150,7 @@ impl AreaLight {
     /// Triangles and disks are sampled by area; a sphere seen from outside by the cone it fills
     /// (Shirley, Wang & Zimmerman 1996).
     #[inline(always)]
-    pub fn sample(&self, from: Vec3, u_pick: f32, u: Vec2, textures: &Textures) -> Option<LightSample> {
+    pub(crate) fn sample(&self, light: LightId, from: Vec3, u_pick: f32, u: Vec2) -> Option<LightSample> {
         let point = match &self.form {
             Form::Mesh { triangles, by_area } => {
                 let t = &triangles[by_area.sample_and_reuse(u_pick).0.value];
@@ -168,8 +168,10 @@ impl AreaLight {
                 let d = concentric_disk(u);
                 LightPoint { p: *center + d.x * *u_axis + d.y * *v_axis, normal: *normal, uv: disk_uv(d) }
             }
-            Form::Sphere { center, radius, frame, inwards } => {
-                return self.sample_sphere(*center, *radius, frame, *inwards, from, u, textures);
+            Form::Sphere { center, radius, inwards, .. } => {
+                let sample = if *inwards { sphere::sample_area } else { sphere::sample_cone };
+                let (p, wi, pdf) = sample(*center, *radius, from, u)?;
+                return Some(LightSample { wi, pdf, target: Target::Point(p), light, uv: Vec2::ZERO });
             }
         };
         let to_light = point.p - from;
@@ -181,32 +183,20 @@ impl AreaLight {
             return None;
         }
         let pdf = to_solid_angle(1.0 / self.area, distance_squared, cos_light);
-        let radiance = textures.color(self.radiance, point.uv);
-        pdf.is_finite().then_some(LightSample { wi, radiance, pdf, target: Target::Point(point.p) })
+        let target = Target::Point(point.p);
+        pdf.is_finite().then_some(LightSample { wi, pdf, target, light, uv: point.uv })
     }
 
-    #[allow(clippy::too_many_arguments)]
-    #[inline(never)]
-    fn sample_sphere(
-        &self,
-        center: Vec3,
-        radius: f32,
-        frame: &glam::Mat3,
-        inwards: bool,
-        from: Vec3,
-        u: Vec2,
-        textures: &Textures,
-    ) -> Option<LightSample> {
-        let (p, wi, pdf) = if inwards {
-            sphere::sample_area(center, radius, from, u)?
-        } else {
-            sphere::sample_cone(center, radius, from, u)?
-        };
-        let radiance = match self.radiance {
-            ColorInput::Constant(radiance) => radiance,
-            textured => textures.color(textured, sphere::uv(frame, p - center)),
-        };
-        Some(LightSample { wi, radiance, pdf, target: Target::Point(p) })
+    /// Radiance that a sampled point of the light emits towards where it was sampled from.
+    #[inline]
+    pub(crate) fn radiance(&self, s: &LightSample, textures: &Textures) -> Rgb {
+        match (&self.form, s.target, self.radiance) {
+            (_, _, ColorInput::Constant(radiance)) => radiance,
+            (Form::Sphere { center, frame, .. }, Target::Point(p), textured) => {
+                textures.color(textured, sphere::uv(frame, p - *center))
+            }
+            (_, _, textured) => textures.color(textured, s.uv),
+        }
     }
 
     /// The density, in sr⁻¹, with which `sample` draws the direction from `from` to the point `p` of

@@ -8,7 +8,7 @@ use sr_sampling::warp::UniformSphere;
 use sr_sampling::{Distribution, PiecewiseConstant2D, Sample};
 use sr_scene::{Image, Pixels, Rgb};
 
-use super::{LightSample, Target};
+use super::{LightId, LightSample, Target};
 use crate::texture::{luminance, texel};
 
 /// The same radiance from every direction.
@@ -20,9 +20,9 @@ pub struct ConstantEnvironment {
 
 impl ConstantEnvironment {
     /// A direction, all equally likely.
-    pub fn sample(&self, u: Vec2) -> Option<LightSample> {
+    pub(crate) fn sample(&self, light: LightId, u: Vec2) -> Option<LightSample> {
         let Sample { value: wi, pdf } = UniformSphere.sample(u)?;
-        Some(LightSample { wi, radiance: self.radiance, pdf, target: Target::Infinity })
+        Some(LightSample { wi, pdf, target: Target::Infinity, light, uv: Vec2::ZERO })
     }
 
     /// 1 / 4π, in sr⁻¹.
@@ -90,7 +90,8 @@ impl Environment {
         self.radiance_at(uv_of(self.light_from_world * wi))
     }
 
-    fn radiance_at(&self, uv: Vec2) -> Rgb {
+    /// Radiance at a point of the image.
+    pub(crate) fn radiance_at(&self, uv: Vec2) -> Rgb {
         let (width, height) = (self.image.width, self.image.height);
         let at = uv * Vec2::new(width as f32, height as f32) - 0.5;
         let (cell, t) = (at.floor(), at - at.floor());
@@ -104,7 +105,7 @@ impl Environment {
 
     /// A direction, in proportion to luminance. `None` from a black image.
     #[inline(never)]
-    pub fn sample(&self, u: Vec2) -> Option<LightSample> {
+    pub(crate) fn sample(&self, light: LightId, u: Vec2) -> Option<LightSample> {
         let Sample { value: uv, pdf } = self.table.as_ref()?.sample(u)?;
         let (sin_theta, cos_theta) = (PI * uv.y).sin_cos();
         let (sin_phi, cos_phi) = (TAU * uv.x).sin_cos();
@@ -112,9 +113,10 @@ impl Environment {
         let pdf = per_solid_angle(pdf, sin_theta);
         (sin_theta > 0.0 && pdf.is_finite()).then(|| LightSample {
             wi: self.world_from_light * local,
-            radiance: self.radiance_at(uv),
             pdf,
             target: Target::Infinity,
+            light,
+            uv,
         })
     }
 

@@ -6,8 +6,8 @@ use sr_sampling::{AliasTable, power_weight};
 use sr_scene::Rgb;
 
 use super::{
-    AreaLight, ConstantEnvironment, DirectionalLight, Environment, LightSample, PointLight, SeenFrom,
-    SpotLight,
+    AreaLight, ConstantEnvironment, DeltaSample, DirectionalLight, Environment, LightSample, PointLight,
+    SeenFrom, SpotLight,
 };
 use crate::texture::{Textures, luminance};
 
@@ -132,33 +132,36 @@ impl Lights {
     /// Draws a direction from `from` to one extended light, chosen by `u_pick`. The density is that of
     /// reaching this light: choice times direction.
     #[inline(always)]
-    pub fn sample(&self, from: Vec3, u_pick: f32, u: Vec2, textures: &Textures) -> Option<LightSample> {
+    pub fn sample(&self, from: Vec3, u_pick: f32, u: Vec2) -> Option<LightSample> {
         let (index, pmf, u_pick) = self.extended_choice.sample(u_pick)?;
-        let mut s = self.sample_one(LightId(index as u32), from, u_pick, u, textures)?;
+        let mut s = self.sample_one(LightId(index as u32), from, u_pick, u)?;
         s.pdf *= pmf;
         Some(s)
     }
 
     /// Draws a direction from `from` to a given extended light.
     #[inline(always)]
-    pub(crate) fn sample_one(
-        &self,
-        id: LightId,
-        from: Vec3,
-        u_pick: f32,
-        u: Vec2,
-        textures: &Textures,
-    ) -> Option<LightSample> {
+    pub(crate) fn sample_one(&self, id: LightId, from: Vec3, u_pick: f32, u: Vec2) -> Option<LightSample> {
         match &self.extended[id.0 as usize] {
-            Extended::Area(area) => area.sample(from, u_pick, u, textures),
-            Extended::Constant(constant) => constant.sample(u),
-            Extended::Environment(environment) => environment.sample(u),
+            Extended::Area(area) => area.sample(id, from, u_pick, u),
+            Extended::Constant(constant) => constant.sample(id, u),
+            Extended::Environment(environment) => environment.sample(id, u),
+        }
+    }
+
+    /// Radiance that arrives along a sampled direction if nothing is in between.
+    #[inline]
+    pub fn radiance(&self, s: &LightSample, textures: &Textures) -> Rgb {
+        match &self.extended[s.light.0 as usize] {
+            Extended::Area(area) => area.radiance(s, textures),
+            Extended::Constant(constant) => constant.radiance,
+            Extended::Environment(environment) => environment.radiance_at(s.uv),
         }
     }
 
     /// Light arriving at `from` from one delta light, over the probability of choosing it.
     #[inline]
-    pub fn sample_delta(&self, from: Vec3, u_pick: f32, textures: &Textures) -> Option<LightSample> {
+    pub fn sample_delta(&self, from: Vec3, u_pick: f32, textures: &Textures) -> Option<DeltaSample> {
         let (index, pmf, _) = self.delta_choice.sample(u_pick)?;
         let mut s = match &self.deltas[index] {
             Delta::Point(point) => point.sample(from)?,
@@ -216,13 +219,8 @@ impl Lights {
     }
 
     /// The density over directions of one light, or of all, as seen from a point.
-    pub fn seen_from<'a>(
-        &'a self,
-        from: Vec3,
-        only: Option<LightId>,
-        textures: &'a Textures,
-    ) -> SeenFrom<'a> {
-        SeenFrom::new(self, from, only, textures)
+    pub fn seen_from(&self, from: Vec3, only: Option<LightId>) -> SeenFrom<'_> {
+        SeenFrom::new(self, from, only)
     }
 
     /// The whole density, in sr⁻¹, of drawing direction `wi`: every light along it counts, also one behind another.

@@ -16,7 +16,7 @@ mod list;
 mod point;
 mod seen_from;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use sr_scene::Rgb;
 
 pub use area::AreaLight;
@@ -27,17 +27,31 @@ pub use list::{LightId, Lights};
 pub use point::{DirectionalLight, PointLight, SpotLight};
 pub use seen_from::SeenFrom;
 
-/// A sampled direction towards a light.
+/// A sampled direction towards a light with an extent. What arrives along it, [`Lights::radiance`] tells: it may cost
+/// a look at a picture, which a light that turns out to be hidden is not worth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightSample {
     /// Unit vector from the shading point.
     pub wi: Vec3,
-    /// Radiance that arrives along `wi` if nothing is in between; of a delta light, already divided by
-    /// the density (intensity over squared distance, irradiance).
-    pub radiance: Rgb,
-    /// Density in sr⁻¹; 1 for a delta light.
+    /// Density in sr⁻¹.
     pub pdf: f32,
     /// Where the light is: what a shadow ray must reach.
+    pub target: Target,
+    /// The light.
+    pub light: LightId,
+    /// Where on it, in texture coordinates; zero on a sphere, where `target` tells.
+    pub uv: Vec2,
+}
+
+/// The direction towards a delta light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DeltaSample {
+    /// Unit vector from the shading point.
+    pub wi: Vec3,
+    /// What arrives along `wi` if nothing is in between, already divided by the density: intensity over squared
+    /// distance, or irradiance.
+    pub radiance: Rgb,
+    /// Where the light is.
     pub target: Target,
 }
 

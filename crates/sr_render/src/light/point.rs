@@ -5,7 +5,7 @@ use std::f32::consts::PI;
 use glam::{Mat4, Vec2, Vec3};
 use sr_scene::{ColorInput, Rgb, TextureId};
 
-use super::{LightSample, Target};
+use super::{DeltaSample, Target};
 use crate::texture::Textures;
 
 /// A point that shines equally in all directions.
@@ -19,7 +19,7 @@ pub struct PointLight {
 
 impl PointLight {
     /// Light arriving at `p`: I / r².
-    pub fn sample(&self, p: Vec3) -> Option<LightSample> {
+    pub fn sample(&self, p: Vec3) -> Option<DeltaSample> {
         towards(self.position, p, |_| self.intensity)
     }
 
@@ -40,8 +40,8 @@ pub struct DirectionalLight {
 
 impl DirectionalLight {
     /// The same everywhere.
-    pub fn sample(&self) -> LightSample {
-        LightSample { wi: -self.direction, radiance: self.irradiance, pdf: 1.0, target: Target::Infinity }
+    pub fn sample(&self) -> DeltaSample {
+        DeltaSample { wi: -self.direction, radiance: self.irradiance, target: Target::Infinity }
     }
 
     /// Power through a disk of the scene's radius.
@@ -82,7 +82,7 @@ impl SpotLight {
     }
 
     /// Light arriving at `p`.
-    pub fn sample(&self, p: Vec3, textures: &Textures) -> Option<LightSample> {
+    pub fn sample(&self, p: Vec3, textures: &Textures) -> Option<DeltaSample> {
         towards(self.position, p, |outwards| {
             let local = self.light_from_world.transform_vector3(outwards).normalize();
             self.falloff(local.z) * self.tint(local, textures)
@@ -114,13 +114,13 @@ impl SpotLight {
     }
 }
 
-fn towards(position: Vec3, p: Vec3, intensity: impl Fn(Vec3) -> Rgb) -> Option<LightSample> {
+fn towards(position: Vec3, p: Vec3, intensity: impl Fn(Vec3) -> Rgb) -> Option<DeltaSample> {
     let to_light = position - p;
     let distance_squared = to_light.length_squared();
     (distance_squared > 0.0).then(|| {
         let wi = to_light / distance_squared.sqrt();
         let radiance = intensity(-wi) / distance_squared;
-        LightSample { wi, radiance, pdf: 1.0, target: Target::Point(position) }
+        DeltaSample { wi, radiance, target: Target::Point(position) }
     })
 }
 

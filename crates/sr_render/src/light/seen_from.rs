@@ -4,7 +4,6 @@ use glam::{Vec2, Vec3};
 use sr_sampling::{Distribution, Sample, SolidAngle};
 
 use super::{LightId, Lights};
-use crate::texture::Textures;
 
 /// One light, or all of them, as seen from a point: a density over directions.
 ///
@@ -14,12 +13,11 @@ pub struct SeenFrom<'a> {
     lights: &'a Lights,
     from: Vec3,
     only: Option<LightId>,
-    textures: &'a Textures,
 }
 
 impl<'a> SeenFrom<'a> {
-    pub(super) fn new(lights: &'a Lights, from: Vec3, only: Option<LightId>, textures: &'a Textures) -> Self {
-        Self { lights, from, only, textures }
+    pub(super) fn new(lights: &'a Lights, from: Vec3, only: Option<LightId>) -> Self {
+        Self { lights, from, only }
     }
 }
 
@@ -29,8 +27,8 @@ impl Distribution for SeenFrom<'_> {
 
     fn sample(&self, (u_pick, u): (f32, Vec2)) -> Option<Sample<SolidAngle>> {
         let drawn = match self.only {
-            Some(id) => self.lights.sample_one(id, self.from, u_pick, u, self.textures),
-            None => self.lights.sample(self.from, u_pick, u, self.textures),
+            Some(id) => self.lights.sample_one(id, self.from, u_pick, u),
+            None => self.lights.sample(self.from, u_pick, u),
         }?;
         // Rounding can make the ray miss the edge of a light that was just sampled; what was drawn is
         // a lower bound of the density.
