@@ -6,7 +6,7 @@
 use glam::Vec3;
 
 use super::sheared::{Sheared, Triangles};
-use super::simd::Lanes;
+use super::simd::{Lanes, Portable};
 use super::{TriangleBlock, WIDE};
 use crate::{Hit, Ray};
 
@@ -43,8 +43,20 @@ pub(super) fn scan<L: Lanes, const ANY: bool>(
     if lanes.bits(lanes.lt(found.t, beyond_doubt)) == 0 {
         return conclude::<_, ANY>(lanes, blocks, (ray, &found), closest);
     }
-    let found = meet_all::<_, ANY, true>(lanes, (blocks, count), (ray, &sheared));
-    conclude::<_, ANY>(lanes, blocks, (ray, &found), closest)
+    scan_exactly::<ANY>((blocks, count), ray, closest)
+}
+
+/// [`scan`], looking twice where rounding makes a hit doubtful. Rare, hence small rather than fast.
+#[cold]
+#[inline(never)]
+fn scan_exactly<const ANY: bool>(
+    (blocks, count): (&[TriangleBlock<WIDE>], usize),
+    ray: &Ray,
+    closest: &mut Hit,
+) -> bool {
+    let sheared = Sheared::new(Portable, ray);
+    let found = meet_all::<_, ANY, true>(Portable, (blocks, count), (ray, &sheared));
+    conclude::<_, ANY>(Portable, blocks, (ray, &found), closest)
 }
 
 /// What a ray meets, per lane.

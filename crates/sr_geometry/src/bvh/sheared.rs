@@ -13,7 +13,7 @@ use crate::Ray;
 pub(super) const SHEAR_SLACK: f32 = 5.0 * f32::EPSILON;
 
 /// Hits nearer than this part of what the triangle spans along the ray are looked at twice. Errors are larger only for
-/// triangles that are seen ten thousand times longer than wide.
+/// triangles that are seen several thousand times longer than wide.
 const NEAR: f32 = 1.0 / 256.0;
 
 /// An order of the axes; the fourth is none.
