@@ -57,7 +57,8 @@ def render(
     Args:
         scene: from :func:`steradian.load`.
         spp: samples per pixel; the scene's own number if neither this nor ``time`` is given.
-        time: stop after so many seconds of sampling; whichever of ``spp`` and ``time`` comes first.
+        time: stop after so many seconds of sampling, but not before each pixel has a sample; whichever of
+            ``spp`` and ``time`` comes first.
         strategy: how directions are chosen, such as ``0.5 * sr.cosine + 0.5 * sr.light`` or its text;
             ``sr.mis(sr.bsdf, sr.light)`` unless given.
         sampler: ``"sobol"`` (Owen-scrambled) or ``"independent"``.
@@ -74,9 +75,12 @@ def render(
             ``result.stopped == "interrupted"``. A second Ctrl-C raises in any case.
 
     Raises:
+        TypeError: if ``scene`` is none.
         ValueError: if a setting makes no sense.
         MemoryError: if the film is larger than the machine's memory.
     """
+    if not isinstance(scene, Scene):
+        raise TypeError(f"render takes a scene, not {type(scene).__name__}; load it first: sr.load(...)")
     own = scene.settings
     width, height = _checked_size((own.width, own.height) if size is None else size)
     if on_interrupt not in ("raise", "return"):

@@ -136,11 +136,13 @@ class Result:
         _internal.write_image(os.fspath(path), self._image, self._metadata(), float(exposure), tone)
 
     def merge(self, other: Result) -> Result:
-        """Both results' samples together; times add up.
+        """Returns both results' samples together, as a new result; times add up.
 
         Merging runs over parts of a sample range gives the same bits as one run over all of it.
         Raises ValueError if settings differ or a sample is in both.
         """
+        if not isinstance(other, Result):
+            raise TypeError(f"merge takes another result, not {type(other).__name__}")
         for name in self.settings.keys() | other.settings.keys():
             mine, others = self.settings.get(name), other.settings.get(name)
             if mine != others:

@@ -58,7 +58,7 @@ impl Surface {
 #[derive(Clone, Copy)]
 pub(crate) struct Located {
     pub p: Vec3,
-    /// How far from `p` the surface may be, on each axis.
+    /// How far from `p` the surface may be, on each axis: a bound of rounding errors, also of the next ray's test.
     pub p_error: Vec3,
     pub ng: Vec3,
     pub ns: Vec3,

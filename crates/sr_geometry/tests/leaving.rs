@@ -83,6 +83,17 @@ fn boxes_at_many_scales() {
     assert!(lost < 50, "{lost} of 480000");
 }
 
+#[test]
+fn a_ray_starts_on_the_side_to_which_it_points() {
+    let mut mesh = OwnedMesh::default();
+    mesh.push([Vec3::new(1e3, 0.0, 0.0), Vec3::new(0.0, 1e3, 5.0), Vec3::new(0.0, -2.0, 1e3)]);
+    let surface = mesh.build().surface_of_triangle(ShapeId(0), 0, 0.3, 0.3);
+    for direction in [surface.ng, -surface.ng, surface.ng.any_orthogonal_vector() + 0.1 * surface.ng] {
+        let moved = (surface.spawn_ray(direction).origin - surface.p).dot(surface.ng);
+        assert!(moved * direction.dot(surface.ng) > 0.0, "{direction}: {moved}");
+    }
+}
+
 /// A flat rectangle of strips, each as long as all of it: a ray that leaves one meets none.
 #[test]
 fn strips_do_not_hide_one_another() {

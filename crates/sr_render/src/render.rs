@@ -61,7 +61,7 @@ impl RenderSettings {
 /// The caller's hold on a running render.
 #[derive(Clone, Copy)]
 pub struct Control<'a> {
-    /// Set it to stop soon; the pass under way is then dropped.
+    /// Set it to stop soon; the pass under way, a few seconds at most, is then dropped.
     pub cancel: &'a AtomicBool,
     /// No pass is begun that is not expected to end by then, except the first.
     pub deadline: Option<Instant>,
@@ -207,7 +207,7 @@ struct Sampler<'a, I, Q> {
     /// One independent sequence per replicate.
     sequences: [Q; REPLICATES],
     #[cfg(target_arch = "x86_64")]
-    has_avx2: bool,
+    has_avx2_and_fma: bool,
 }
 
 impl<'a, I: Integrator, Q: Sequence> Sampler<'a, I, Q> {
@@ -222,7 +222,7 @@ impl<'a, I: Integrator, Q: Sequence> Sampler<'a, I, Q> {
             height: settings.height,
             sequences: std::array::from_fn(|r| sequence.replicate(r as u32)),
             #[cfg(target_arch = "x86_64")]
-            has_avx2: is_x86_feature_detected!("avx2")
+            has_avx2_and_fma: is_x86_feature_detected!("avx2")
                 && is_x86_feature_detected!("fma")
                 && is_x86_feature_detected!("bmi1")
                 && is_x86_feature_detected!("bmi2")
@@ -253,7 +253,7 @@ impl<'a, I: Integrator, Q: Sequence> Sampler<'a, I, Q> {
     /// [`Sampler::pixel`], compiled for the instruction set of this processor. The results are the same bits.
     fn pixel_fast(&self, pixel: u32, first: u32, len: u32, tree: &mut PairwiseSum) -> (PixelSums, u64) {
         #[cfg(target_arch = "x86_64")]
-        if self.has_avx2 {
+        if self.has_avx2_and_fma {
             #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt")]
             fn pixel_avx2<I: Integrator, Q: Sequence>(
                 sampler: &Sampler<'_, I, Q>,

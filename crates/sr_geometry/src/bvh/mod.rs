@@ -29,7 +29,7 @@ use build::MAX_DEPTH;
 /// Children of a node, and triangles of a block.
 pub(crate) const WIDTH: usize = 8;
 
-/// Triangles of a block of a tree that is none, but a few triangles.
+/// Triangles of a block that is scanned.
 const WIDE: usize = 16;
 
 /// Up to this many triangles get no tree: meeting all of them is faster (see docs/performance.md).

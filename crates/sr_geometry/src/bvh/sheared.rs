@@ -174,7 +174,7 @@ impl<L: Lanes> Sheared<L> {
 }
 
 /// Does the ray meet the plane of a triangle ahead of its origin? In `f64`, where the sign of t is right also for a
-/// sliver.
+/// sliver. Hits are only ever taken away by this: one that is ahead by less than the error of t may be lost.
 #[cold]
 #[inline(never)]
 fn is_ahead(ray: &Ray, [a, b, c]: [Vec3; 3]) -> bool {

@@ -87,32 +87,70 @@ fn the_depth_is_bounded_where_the_heuristic_peels_off_one_at_a_time() {
     check_tree(&[triangle(Vec3::ONE, 1.0, 3); 5000]);
 }
 
+/// Holds all kernels against one another.
+fn check_kernels(triangles: &[[Vec3; 3]], rays: &[Ray]) -> usize {
+    let (mut bvh, tree) = build(triangles);
+    let none = |_: u32, _: &Ray| None;
+    let hits = |bvh: &Bvh| -> Vec<_> {
+        rays.iter().map(|ray| (bvh.intersect(&tree, ray, none), bvh.occluded(&tree, ray, none))).collect()
+    };
+    let detected = hits(&bvh);
+    for kernel in Kernel::available() {
+        bvh.kernel = kernel;
+        assert_eq!(detected, hits(&bvh), "{kernel:?}");
+    }
+    detected.iter().filter(|(hit, _)| hit.is_some()).count()
+}
+
 #[test]
 fn kernels_agree_to_the_bit() {
     let at = |i: u32| 3.0 * Vec3::new(i as f32, 1.7 * i as f32, 2.9 * i as f32).map(f32::sin);
+    let ray = |i: u32| {
+        // Some along planes and axes.
+        let direction = at(i * 7 + 3) * Vec3::new((i % 5) as f32, (i % 3) as f32, 1.0);
+        let t_max = if i % 4 == 0 { 0.5 } else { f32::INFINITY };
+        Ray { t_max, ..Ray::new(at(i * 3 + 1), direction) }
+    };
+    let mut rays: Vec<Ray> = (0..5000).map(ray).collect();
+    for bad in [f32::NAN, f32::INFINITY, 0.0] {
+        rays.push(Ray::new(Vec3::ONE, Vec3::splat(bad)));
+        rays.push(Ray::new(Vec3::splat(bad), Vec3::X));
+        rays.push(Ray { t_max: bad, ..Ray::new(Vec3::ZERO, at(1)) });
+    }
     for (count, size) in [(5, 2.0), (37, 1.5), (300, 1.0), (5000, 0.3)] {
-        let triangles: Vec<_> = (0..count).map(|i| triangle(at(i), size, i)).collect();
-        let (mut bvh, tree) = build(&triangles);
-        let none = |_: u32, _: &Ray| None;
-        let rays: Vec<Ray> = (0..5000u32)
+        let mut triangles: Vec<_> = (0..count).map(|i| triangle(at(i), size, i)).collect();
+        assert!(check_kernels(&triangles, &rays) > 100);
+        // Each twice: which of two at the same distance is met must not depend on the number of lanes.
+        if count == 5 {
+            triangles.extend_from_within(..);
+            triangles.extend_from_within(..);
+            check_kernels(&triangles, &rays);
+        }
+    }
+}
+
+/// Long strips side by side, and rays that leave them: hits that have to be looked at twice.
+#[test]
+fn kernels_agree_on_slivers() {
+    for strips in [8_u32, 100] {
+        let turn = glam::Quat::from_axis_angle(Vec3::new(0.36, 0.48, 0.8), 1.0);
+        let corner = |i: u32, y: f32| turn * Vec3::new(i as f32 * 0.02, 4.0 * y, 1.0);
+        let strip = |i: u32| {
+            let [a, b, c, d] = [corner(i, 0.0), corner(i + 1, 0.0), corner(i + 1, 1.0), corner(i, 1.0)];
+            [[a, b, c], [a, c, d]]
+        };
+        let triangles: Vec<_> = (0..strips).flat_map(strip).collect();
+        let rays: Vec<_> = (0..4000_u32)
             .map(|i| {
-                let direction = at(i * 7 + 3);
-                // Some along planes and axes.
-                let direction = direction * Vec3::new((i % 5) as f32, (i % 3) as f32, 1.0);
-                Ray {
-                    t_max: if i % 4 == 0 { 0.5 } else { f32::INFINITY },
-                    ..Ray::new(at(i * 3 + 1), direction)
-                }
+                let [a, b, c] = triangles[i as usize % triangles.len()];
+                let u = (i % 97) as f32 / 97.0;
+                let origin = a + 0.4 * u * (b - a) + 0.5 * (1.0 - u) * (c - a);
+                let normal = (b - a).cross(c - a).normalize();
+                // From a little below to a little above the plane.
+                let along = Vec3::new(i as f32, 1.3 * i as f32, 2.1 * i as f32).map(f32::sin);
+                Ray::new(origin + normal * ((i % 7) as f32 - 3.0) * 1e-6, along)
             })
             .collect();
-        let hits = |bvh: &Bvh| -> Vec<_> {
-            rays.iter().map(|ray| (bvh.intersect(&tree, ray, none), bvh.occluded(&tree, ray, none))).collect()
-        };
-        let detected = hits(&bvh);
-        for kernel in Kernel::available() {
-            bvh.kernel = kernel;
-            assert_eq!(detected, hits(&bvh), "{kernel:?}");
-        }
-        assert!(detected.iter().filter(|(hit, _)| hit.is_some()).count() > 100);
+        assert!(check_kernels(&triangles, &rays) > 100);
     }
 }

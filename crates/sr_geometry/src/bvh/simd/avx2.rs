@@ -16,7 +16,7 @@ macro_rules! avx2 {
     };
 }
 
-/// Proof that this processor has AVX2, BMI1, BMI2 and LZCNT.
+/// Proof that this processor has AVX2, BMI1, BMI2 and LZCNT: what `meet_avx2` is compiled for.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::bvh) struct Avx2(());
 
@@ -51,11 +51,13 @@ impl Lanes for Avx2 {
     }
     #[inline(always)]
     fn permute(self, v: Vec3A, order: &Order) -> Vec3A {
+        // An `Order` is aligned to 16 bytes.
         avx2!(_mm_permutevar_ps(v.into(), _mm_load_si128(std::ptr::from_ref(order).cast()))).into()
     }
     #[inline(always)]
     fn load_part(self, x: &[f32; WIDE], part: usize) -> Self::F {
-        debug_assert!(part < WIDE / WIDTH);
+        let part = part % (WIDE / WIDTH);
+        // Within the array, as the remainder is.
         avx2!(_mm256_loadu_ps(x.as_ptr().add(part * WIDTH)))
     }
     #[inline(always)]

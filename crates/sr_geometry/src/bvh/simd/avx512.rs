@@ -16,7 +16,8 @@ macro_rules! avx512 {
     };
 }
 
-/// Proof that this processor has the parts F, VL, DQ and BW of AVX-512, and what an [`Avx2`] proves.
+/// Proof that this processor has the parts F, VL, DQ and BW of AVX-512, what they imply, and what an [`Avx2`] proves:
+/// what `meet_avx512` is compiled for.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::bvh) struct Avx512(Avx2);
 
@@ -25,7 +26,9 @@ impl Avx512 {
         let found = is_x86_feature_detected!("avx512f")
             && is_x86_feature_detected!("avx512vl")
             && is_x86_feature_detected!("avx512dq")
-            && is_x86_feature_detected!("avx512bw");
+            && is_x86_feature_detected!("avx512bw")
+            && is_x86_feature_detected!("fma")
+            && is_x86_feature_detected!("f16c");
         Avx2::detect().filter(|_| found).map(Self)
     }
 
