@@ -134,6 +134,13 @@ def test_an_exception_in_the_callback_comes_out(cornell):
         sr.render(cornell, time=30, on_progress=fail, **SMALL)
 
 
+def test_what_is_no_scene_and_no_result_is_named(cornell):
+    with pytest.raises(TypeError, match="not str; load it first"):
+        sr.render("scene.xml")
+    with pytest.raises(TypeError, match="not NoneType"):
+        sr.render(cornell, spp=1, **SMALL).merge(None)
+
+
 @pytest.mark.parametrize(
     ("settings", "words"),
     [
@@ -147,6 +154,8 @@ def test_an_exception_in_the_callback_comes_out(cornell):
         ({"max_depth": 0}, "max_depth"),
         ({"max_depth": -2}, "max_depth"),
         ({"size": (0, 5)}, "width"),
+        ({"size": "8x8"}, "width, height"),
+        ({"size": 8}, "width, height"),
         ({"size": (60_000, 60_000)}, "60000"),
         ({"seed": -1}, "seed"),
         ({"seed": 2**64}, "seed"),

@@ -13,6 +13,7 @@ import steradian as sr
         (sr.bsdf, "bsdf"),
         (sr.light, "light"),
         (0.5 * sr.cosine + 0.5 * sr.light, "0.5 cosine + 0.5 light"),
+        (sum([0.5 * sr.cosine, 0.5 * sr.light]), "0.5 cosine + 0.5 light"),
         (sr.light * 0.75 + 0.25 * sr.bsdf, "0.25 bsdf + 0.75 light"),
         (0.5 * (0.5 * sr.bsdf + 0.5 * sr.light) + 0.5 * sr.light, "0.25 bsdf + 0.75 light"),
         (sr.mis(sr.bsdf, sr.light), "mis(bsdf, light)"),

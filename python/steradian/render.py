@@ -163,7 +163,12 @@ def _sample_count(
 
 
 def _checked_size(size: tuple[int, int]) -> tuple[int, int]:
-    width, height = size
+    try:
+        if isinstance(size, str):
+            raise TypeError
+        width, height = size
+    except (TypeError, ValueError):
+        raise ValueError(f"size is (width, height) in pixels, such as (640, 360), not {size!r}") from None
     _internal.check_film_size(
         _checked_integer("width", width, 1, 2**32 - 1), _checked_integer("height", height, 1, 2**32 - 1)
     )

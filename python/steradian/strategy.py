@@ -67,6 +67,10 @@ class Density:
 
     __rmul__ = __mul__
 
+    def __radd__(self, other: object) -> Density:
+        # What sum() starts with.
+        return self if other == 0 and isinstance(other, int) else NotImplemented
+
     def __add__(self, other: Density) -> Density:
         if not isinstance(other, Density):
             return NotImplemented
@@ -114,6 +118,10 @@ light = Density([(1.0, "light")])
 """Towards the lights."""
 
 
+HEURISTICS = ("power", "balance", "cutoff", "maximum")
+"""How :func:`mis` shares a sample among the techniques that could have drawn it."""
+
+
 def mis(*techniques: Density, heuristic: str = "power") -> Strategy:
     """One sample from each technique, weighted so that the sum stays unbiased (Veach 1997, §9.2).
 
@@ -123,6 +131,9 @@ def mis(*techniques: Density, heuristic: str = "power") -> Strategy:
     for technique in techniques:
         if not isinstance(technique, Density):
             raise TypeError(f"mis() combines densities, such as sr.bsdf, not {technique!r}")
+    if heuristic not in HEURISTICS:
+        known = ", ".join(HEURISTICS)
+        raise ValueError(f"there is no heuristic {heuristic!r}; there are {known}")
     if not techniques:
         return Strategy("")
     parts = ", ".join(technique._expression() for technique in techniques)

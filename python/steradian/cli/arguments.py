@@ -65,7 +65,12 @@ def _add_render(commands: argparse._SubParsersAction[_Parser]) -> None:
         "(default: the scene's name with .exr, in the current folder)",
     )
     add("--spp", metavar="N", type=_integer(1, MAX_SPP), help="samples per pixel (default: the scene's)")
-    add("--time", metavar="SECONDS", type=_seconds, help="stop sampling after this time, but not before each pixel has a sample")
+    add(
+        "--time",
+        metavar="SECONDS",
+        type=_seconds,
+        help="stop sampling after this time, but not before each pixel has a sample",
+    )
     add(
         "--strategy",
         metavar="EXPR",
