@@ -75,3 +75,17 @@ fn files_that_include_themselves_end() {
     assert!(scene.is_none());
     assert!(diagnostics.list.iter().any(|d| d.message.contains("includes itself")));
 }
+
+#[test]
+fn parameters_that_double_are_refused() {
+    let defaults: String =
+        (1..60).map(|i| format!("<default name=\"a{i}\" value=\"$a{0}-1$a{0}-1\"/>\n", i - 1)).collect();
+    let text =
+        format!("<scene version=\"3.0.0\">\n<default name=\"a0\" value=\"xxxxxxxxxx\"/>\n{defaults}</scene>");
+    let diagnostics = load(&text);
+    let long: Vec<_> = diagnostics.list.iter().filter(|d| d.code == "mitsuba::parameter-too-long").collect();
+    assert!(!long.is_empty());
+    let line = diagnostics.one_line(long[0]);
+    assert!(line.starts_with("hostile.xml:15:"), "{line}");
+    assert!(line.contains("shorter values"), "{line}");
+}

@@ -8,8 +8,9 @@
 //! - `reader`: elements to nodes. `value`: the attributes of a property to its value.
 //! - `parameters`, `include`, `alias`: what is carried out on the way.
 //!
-//! Limits against hostile files: size, number of elements, depth of nesting and of inclusion; document type
-//! definitions, and with them entities, are refused.
+//! Limits against hostile files: size, number of elements, depth of nesting and of inclusion, length of an attribute
+//! after substitution (64 KiB) and of all of them together (64 MiB); document type definitions, and with them
+//! entities, are refused.
 
 mod alias;
 mod elements;
