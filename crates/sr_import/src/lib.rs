@@ -28,7 +28,7 @@ use std::path::{Path, PathBuf};
 use sr_scene::{Diagnostic, Diagnostics, SceneDesc, Span};
 
 pub use lower::Origin;
-pub use node::{Child, Node, Property, Reference, SpectrumValue, Value};
+pub use node::{Child, Node, OtherName, Property, Reference, SpectrumValue, Value};
 
 /// How to load a scene file.
 #[derive(Clone, Debug, Default)]

@@ -17,6 +17,8 @@ pub struct Node {
     pub kind: String,
     /// What references call it.
     pub id: Option<String>,
+    /// What references may call it as well.
+    pub other_names: Vec<OtherName>,
     /// Which property of its parent it is, such as `reflectance`.
     pub name: Option<String>,
     /// Its values.
@@ -24,6 +26,15 @@ pub struct Node {
     /// Its nested objects and references, in order.
     pub children: Vec<Child>,
     /// Where it is described.
+    pub span: Span,
+}
+
+/// A second name of an object.
+#[derive(Clone, Debug)]
+pub struct OtherName {
+    /// The name.
+    pub id: String,
+    /// Where it is given.
     pub span: Span,
 }
 
@@ -108,6 +119,7 @@ impl Node {
             class: class.into(),
             kind: kind.into(),
             id: None,
+            other_names: Vec::new(),
             name: None,
             properties: Vec::new(),
             children: Vec::new(),

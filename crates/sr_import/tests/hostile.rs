@@ -89,3 +89,33 @@ fn parameters_that_double_are_refused() {
     assert!(line.starts_with("hostile.xml:15:"), "{line}");
     assert!(line.contains("shorter values"), "{line}");
 }
+
+#[test]
+fn aliases_do_not_copy() {
+    // Copies would be 2,000 × 20,000 properties: more than 4 GB.
+    let properties: String = (0..2_000).map(|i| format!("<float name=\"b{i}\" value=\"1\"/>")).collect();
+    let aliases: String = (0..20_000).map(|i| format!("<alias id=\"a\" as=\"c{i}\"/>")).collect();
+    let diagnostics = load(&format!(
+        "<scene version=\"3.0.0\"><bsdf type=\"diffuse\" id=\"a\">{properties}</bsdf>{aliases}\
+         <shape type=\"sphere\"><ref id=\"c19999\"/></shape></scene>"
+    ));
+    assert!(!diagnostics.has_errors());
+}
+
+#[test]
+fn aliases_are_other_names() {
+    let scene = |aliases: &str, id: &str| {
+        load(&format!(
+            "<scene version=\"3.0.0\"><sensor type=\"perspective\" id=\"s\"><float name=\"fov\" value=\"40\"/></sensor><bsdf type=\"diffuse\" id=\"a\"/>\
+             <bsdf type=\"conductor\" id=\"b\"/>{aliases}<shape type=\"sphere\"><ref id=\"{id}\"/></shape></scene>"
+        ))
+    };
+    let codes = |d: &sr_scene::Diagnostics| d.list.iter().map(|d| d.code).collect::<Vec<_>>();
+    let chain = "<alias id=\"a\" as=\"c\"/><alias id=\"c\" as=\"d\"/>";
+    assert!(!scene(chain, "d").has_errors());
+    assert_eq!(codes(&scene(chain, "e")), ["mitsuba::unresolved-reference"]);
+    assert_eq!(codes(&scene("<alias id=\"x\" as=\"c\"/>", "a")), ["mitsuba::unresolved-reference"]);
+    assert_eq!(codes(&scene("<alias id=\"s\" as=\"c\"/>", "a")), ["mitsuba::bad-alias"]);
+    let taken = codes(&scene("<alias id=\"a\" as=\"b\"/>", "a"));
+    assert!(taken.contains(&"mitsuba::duplicate-id"), "{taken:?}");
+}

@@ -38,6 +38,7 @@ pub struct Origin {
 pub fn lower(root: &Node, origin: &Origin, d: &mut Diagnostics) -> Option<SceneDesc> {
     let mut lowering = Lowering::new(origin, d);
     lowering.collect_ids(root);
+    lowering.collect_other_names(root);
     lowering.scene(root);
     lowering.finish(root)
 }
@@ -98,23 +99,32 @@ impl<'a, 'd> Lowering<'a, 'd> {
     fn collect_ids(&mut self, node: &'a Node) {
         for child in &node.children {
             let Child::Node(child) = child else { continue };
-            if let Some(id) = child.id.as_deref()
-                && let Some(first) = self.ids.get(id)
-            {
-                let message = format!(
-                    "the id \"{}\" is given to {} and to {}",
-                    shown(id),
-                    first.title(),
-                    child.title()
-                );
-                self.d.push(
-                    Diagnostic::warning("mitsuba::duplicate-id", &child.span, message)
-                        .consequence("references to it mean the first one"),
-                );
-            } else if let Some(id) = child.id.as_deref() {
-                self.ids.insert(id, child);
+            if let Some(id) = child.id.as_deref() {
+                self.add_id(id, child, &child.span);
             }
             self.collect_ids(child);
+        }
+    }
+
+    /// Other names come second: an object's own id goes before them, wherever it is.
+    fn collect_other_names(&mut self, root: &'a Node) {
+        for child in &root.children {
+            let Child::Node(child) = child else { continue };
+            for name in &child.other_names {
+                self.add_id(&name.id, child, &name.span);
+            }
+        }
+    }
+
+    fn add_id(&mut self, id: &'a str, node: &'a Node, span: &Span) {
+        let first = *self.ids.entry(id).or_insert(node);
+        if !std::ptr::eq(first, node) {
+            let message =
+                format!("the id \"{}\" is given to {} and to {}", shown(id), first.title(), node.title());
+            self.d.push(
+                Diagnostic::warning("mitsuba::duplicate-id", span, message)
+                    .consequence("references to it mean the first one"),
+            );
         }
     }
 
