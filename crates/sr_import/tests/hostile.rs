@@ -92,8 +92,8 @@ fn parameters_that_double_are_refused() {
 
 #[test]
 fn aliases_do_not_copy() {
-    // Copies would be 2,000 × 20,000 properties: more than 4 GB.
-    let properties: String = (0..2_000).map(|i| format!("<float name=\"b{i}\" value=\"1\"/>")).collect();
+    // Copies would be 20,000 × 20,000 properties: more than 40 GB.
+    let properties: String = (0..20_000).map(|i| format!("<float name=\"b{i}\" value=\"1\"/>")).collect();
     let aliases: String = (0..20_000).map(|i| format!("<alias id=\"a\" as=\"c{i}\"/>")).collect();
     let diagnostics = load(&format!(
         "<scene version=\"3.0.0\"><bsdf type=\"diffuse\" id=\"a\">{properties}</bsdf>{aliases}\
@@ -118,4 +118,25 @@ fn aliases_are_other_names() {
     assert_eq!(codes(&scene("<alias id=\"s\" as=\"c\"/>", "a")), ["mitsuba::bad-alias"]);
     let taken = codes(&scene("<alias id=\"a\" as=\"b\"/>", "a"));
     assert!(taken.contains(&"mitsuba::duplicate-id"), "{taken:?}");
+}
+
+#[test]
+fn properties_given_twice_are_reported_and_the_later_is_used() {
+    let twice = |property: &str, again: &str| {
+        load(&format!(
+            "<scene version=\"3.0.0\"><shape type=\"sphere\">{property}<bsdf type=\"diffuse\"/>{again}</shape></scene>"
+        ))
+    };
+    let codes = |d: sr_scene::Diagnostics| d.list.iter().map(|d| d.code).collect::<Vec<_>>();
+    let once = codes(twice("<float name=\"radius\" value=\"2\"/>", ""));
+    let radius = twice("<float name=\"radius\" value=\"-\"/>", "<float name=\"Radius\" value=\"2\"/>");
+    assert!(radius.has_errors(), "a bad value is an error even if another follows");
+    let mut expected = vec!["mitsuba::duplicate-property"];
+    expected.extend(once);
+    let (old, new) = ("<transform name=\"toWorld\"/>", "<transform name=\"to_world\"/>");
+    assert_eq!(codes(twice(old, new)), expected);
+    assert_eq!(
+        codes(twice("<string name=\"radius\" value=\"a\"/>", "<float name=\"radius\" value=\"2\"/>")),
+        expected
+    );
 }

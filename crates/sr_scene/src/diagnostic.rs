@@ -3,6 +3,8 @@
 use std::fmt;
 use std::ops::Range;
 
+use crate::places::Places;
+
 /// A source text: a file, or a Python object's path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, PartialOrd, Ord)]
 pub struct SourceId(pub u32);
@@ -96,19 +98,28 @@ fn nearest_name<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -
 /// The texts that spans point into.
 #[derive(Clone, Debug, Default)]
 pub struct Sources {
-    files: Vec<(String, String)>,
+    files: Vec<Source>,
+}
+
+#[derive(Clone, Debug)]
+struct Source {
+    name: String,
+    text: String,
+    places: Places,
 }
 
 impl Sources {
     /// Adds a text under a name.
     pub fn add(&mut self, name: impl Into<String>, text: impl Into<String>) -> SourceId {
-        self.files.push((name.into(), text.into()));
+        let (name, text) = (name.into(), text.into());
+        let places = Places::new(&text);
+        self.files.push(Source { name, text, places });
         SourceId(u32::try_from(self.files.len() - 1).expect("fewer than 2³² sources"))
     }
 
     /// The name and the text of a source; empty for one that is not known.
     pub fn get(&self, id: SourceId) -> (&str, &str) {
-        self.files.get(id.0 as usize).map_or(("", ""), |(name, text)| (name, text))
+        self.files.get(id.0 as usize).map_or(("", ""), |source| (&source.name, &source.text))
     }
 
     /// The number of sources.
@@ -121,14 +132,11 @@ impl Sources {
         self.files.is_empty()
     }
 
-    /// One-based line and column of the start of a span.
+    /// One-based line and column of the start of a span. Its cost does not grow with the text.
     pub fn line_column(&self, span: &Span) -> (usize, usize) {
-        let text = self.get(span.source).1;
-        let end =
-            (0..=span.bytes.start.min(text.len())).rev().find(|&i| text.is_char_boundary(i)).unwrap_or(0);
-        let before = &text[..end];
-        let line_start = before.rfind('\n').map_or(0, |i| i + 1);
-        (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1)
+        self.files
+            .get(span.source.0 as usize)
+            .map_or((1, 1), |source| source.places.line_column(&source.text, span.bytes.start))
     }
 }
 

@@ -9,6 +9,7 @@ pub mod diagnostic;
 pub mod image;
 pub mod light;
 pub mod material;
+mod places;
 mod report;
 pub mod shape;
 pub mod texture;

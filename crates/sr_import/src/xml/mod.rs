@@ -20,6 +20,7 @@ mod reader;
 mod syntax;
 mod value;
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use sr_scene::{Diagnostic, Diagnostics, Span};
@@ -51,6 +52,8 @@ struct Reader<'d> {
     directories: Vec<PathBuf>,
     includes: Includes,
     aliases: Vec<alias::Alias>,
+    /// For each object that is being read, the outermost first: where its properties are, by canonical name.
+    names: Vec<HashMap<String, usize>>,
 }
 
 /// Reads a text. `None` if there is no tree to speak of; the reasons are then in `diagnostics`.
@@ -80,6 +83,7 @@ pub fn read(
         directories,
         includes: Includes::new(name),
         aliases: Vec::new(),
+        names: vec![HashMap::new()],
     };
     reader.children(source, element, &mut root, 0);
     let Reader { diagnostics, parameters, directories, aliases, .. } = reader;

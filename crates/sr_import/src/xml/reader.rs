@@ -1,5 +1,8 @@
 //! Elements to nodes.
 
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+
 use glam::DMat4;
 use roxmltree::Node as Element;
 use sr_scene::{Diagnostic, SourceId, Span};
@@ -122,7 +125,9 @@ impl Reader<'_> {
         let mut node = Node::new(element.tag_name().name(), kind, start_tag(source, element));
         node.id = attributes.text("id").map(str::to_owned);
         node.name = attributes.text("name").map(str::to_owned);
+        self.names.push(HashMap::new());
         self.children(source, element, &mut node, depth + 1);
+        self.names.pop();
         parent.children.push(Child::Node(node));
         Ok(())
     }
@@ -136,18 +141,27 @@ impl Reader<'_> {
     ) -> Result<(), String> {
         let value = value::read(kind, attributes)?;
         let name = attributes.required("name")?.to_owned();
-        if let Some(before) =
-            node.properties.iter().position(|p| canonical_name(&p.name) == canonical_name(&name))
-        {
-            let message = format!("\"{name}\" is given twice");
-            self.diagnostics.push(
-                Diagnostic::warning("mitsuba::duplicate-property", span, message)
-                    .consequence("the later value is used"),
-            );
-            node.properties.remove(before);
-        }
-        node.properties.push(Property { name, value, span: span.clone() });
+        self.property(node, Property { name, value, span: span.clone() });
         Ok(())
+    }
+
+    /// Adds a property to the innermost object.
+    fn property(&mut self, node: &mut Node, property: Property) {
+        let places = self.names.last_mut().expect("the scene is an object");
+        match places.entry(canonical_name(&property.name)) {
+            Entry::Vacant(place) => {
+                place.insert(node.properties.len());
+                node.properties.push(property);
+            }
+            Entry::Occupied(place) => {
+                let message = format!("\"{}\" is given twice", shown(&property.name));
+                self.diagnostics.push(
+                    Diagnostic::warning("mitsuba::duplicate-property", &property.span, message)
+                        .consequence("the later value is used"),
+                );
+                node.properties[*place.get()] = property;
+            }
+        }
     }
 
     fn transform(
@@ -170,7 +184,7 @@ impl Reader<'_> {
                 }
             }
         }
-        node.properties.push(Property { name, value: Value::Transform(total), span: span.clone() });
+        self.property(node, Property { name, value: Value::Transform(total), span: span.clone() });
         Ok(())
     }
 
