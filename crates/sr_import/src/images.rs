@@ -3,7 +3,7 @@
 use std::io::Cursor;
 use std::path::Path;
 
-use image::{DynamicImage, ImageReader, Limits};
+use image::{DynamicImage, ImageError, ImageFormat, ImageReader, Limits};
 use sr_scene::{Image, Pixels};
 
 use crate::files;
@@ -12,6 +12,9 @@ use crate::values::srgb_to_linear;
 
 /// Images of more texels are refused before anything is allocated.
 const MAX_TEXELS: u64 = 1 << 28;
+
+/// What a file that Git LFS has not fetched begins with.
+const LFS_POINTER: &[u8] = b"version https://git-lfs.github.com/spec/";
 
 /// What the values of a file mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -31,33 +34,56 @@ pub fn load(path: &Path, decode: Decode) -> Result<Image, String> {
         open_exr(&bytes)?
     } else {
         let image =
-            if jpeg::is_jpeg(&bytes) { jpeg::decode(&bytes, MAX_TEXELS)? } else { open_other(path, bytes)? };
+            if jpeg::is_jpeg(&bytes) { jpeg::decode(&bytes, MAX_TEXELS)? } else { open_other(path, &bytes)? };
         (image.width(), image.height(), convert(image, decode))
     };
     Ok(Image { name: path.display().to_string(), width, height, pixels })
 }
 
-fn open_other(path: &Path, bytes: Vec<u8>) -> Result<DynamicImage, String> {
+fn open_other(path: &Path, bytes: &[u8]) -> Result<DynamicImage, String> {
     let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
-    if reader.format().is_none()
-        && let Ok(format) = image::ImageFormat::from_path(path)
-    {
-        // TGA has no magic number.
-        reader.set_format(format);
-    }
     if reader.format().is_none() {
-        return Err(
-            "its format is not known (PNG, JPEG, BMP, TGA, HDR, PNM, WebP, TIFF and OpenEXR are)".into()
-        );
+        let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        // TGA has no magic number: its name has to do.
+        if extension != "tga" || bytes.starts_with(LFS_POINTER) {
+            return Err(no_image(&extension, bytes));
+        }
+        reader.set_format(ImageFormat::Tga);
     }
     let mut limits = Limits::default();
     (limits.max_image_width, limits.max_image_height) = (Some(1 << 20), Some(1 << 20));
     limits.max_alloc = Some(MAX_TEXELS * 16);
     reader.limits(limits);
-    let decoder = reader.into_decoder().map_err(|e| e.to_string())?;
+    let decoder = reader.into_decoder().map_err(not_decoded)?;
     let (width, height) = image::ImageDecoder::dimensions(&decoder);
     check_size(u64::from(width), u64::from(height))?;
-    DynamicImage::from_decoder(decoder).map_err(|e| e.to_string())
+    DynamicImage::from_decoder(decoder).map_err(not_decoded)
+}
+
+/// Says what a file of no known format is instead.
+fn no_image(extension: &str, bytes: &[u8]) -> String {
+    if bytes.starts_with(LFS_POINTER) {
+        return "it is a pointer of Git LFS, not the image; fetch the image with `git lfs pull`".into();
+    }
+    let known = ImageFormat::from_extension(extension).is_some();
+    let named = if known { format!("it is named .{extension} but is none: ") } else { String::new() };
+    let start: String = String::from_utf8_lossy(&bytes[..bytes.len().min(24)]).escape_debug().collect();
+    format!(
+        "{named}its format is not known (PNG, JPEG, BMP, TGA, HDR, PNM, WebP, TIFF and OpenEXR are); \
+         it begins with \"{start}\""
+    )
+}
+
+fn not_decoded(error: ImageError) -> String {
+    match error {
+        ImageError::Decoding(_) | ImageError::IoError(_) => damaged(&error.to_string()),
+        _ => error.to_string(),
+    }
+}
+
+/// What to say, and to do, about a file that its decoder gave up on.
+pub fn damaged(reason: &str) -> String {
+    format!("it is cut off or damaged ({reason}); fetch or save it again")
 }
 
 fn check_size(width: u64, height: u64) -> Result<(), String> {
@@ -120,9 +146,16 @@ fn finite(value: f32) -> f32 {
     if value.is_nan() { 0.0 } else { value.clamp(-65504.0, f32::MAX) }
 }
 
+fn exr_not_decoded(error: exr::error::Error) -> String {
+    match error {
+        exr::error::Error::Invalid(_) | exr::error::Error::Io(_) => damaged(&error.to_string()),
+        _ => error.to_string(),
+    }
+}
+
 fn open_exr(bytes: &[u8]) -> Result<(u32, u32, Pixels), String> {
     use exr::prelude::*;
-    let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(|e| e.to_string())?;
+    let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(exr_not_decoded)?;
     for header in &meta.headers {
         check_size(header.layer_size.x() as u64, header.layer_size.y() as u64)?;
         if header.deep {
@@ -136,7 +169,7 @@ fn open_exr(bytes: &[u8]) -> Result<(u32, u32, Pixels), String> {
         .first_valid_layer()
         .all_attributes()
         .from_buffered(Cursor::new(bytes))
-        .map_err(|e| e.to_string())?;
+        .map_err(exr_not_decoded)?;
     let layer = image.layer_data;
     let channel = |names: &[&str]| {
         layer.channel_data.list.iter().find(|c| {
@@ -166,4 +199,37 @@ fn open_exr(bytes: &[u8]) -> Result<(u32, u32, Pixels), String> {
         }
     }
     Ok((layer.size.x() as u32, layer.size.y() as u32, Pixels::F32 { channels: channels as u8, data }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_that_are_no_images_are_told_from_cut_ones() {
+        let open = |name: &str, bytes: &[u8]| open_other(Path::new(name), bytes).unwrap_err();
+        let text = open("a.jpg", b"<html>\n");
+        assert!(text.contains("named .jpg but is none") && text.contains("\"<html>\\n\""), "{text}");
+        assert!(open("a.txt", b"\xff\xfe").starts_with("its format is not known"));
+        for name in ["a.png", "a.exr", "a.tga"] {
+            let text = open(name, b"version https://git-lfs.github.com/spec/v1\noid sha256:0\n");
+            assert!(text.contains("git lfs pull"), "{text}");
+        }
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/jpeg");
+        let [png, jpg] = ["420.png", "420.jpg"].map(|name| std::fs::read(folder.join(name)).unwrap());
+        let mut exr = Cursor::new(Vec::new());
+        let black = exr::prelude::SpecificChannels::rgb(|_| (0.0f32, 0.0f32, 0.0f32));
+        exr::prelude::WritableImage::write(&exr::prelude::Image::from_channels((9, 9), black))
+            .to_buffered(&mut exr)
+            .unwrap();
+        let exr = exr.into_inner();
+        for cut in [
+            open("a.png", &png[..png.len() / 2]),
+            jpeg::decode(&jpg[..jpg.len() / 2], MAX_TEXELS).unwrap_err(),
+            open_exr(&exr[..exr.len() / 2]).unwrap_err(),
+            open_exr(&exr[..40]).unwrap_err(),
+        ] {
+            assert!(cut.starts_with("it is cut off or damaged ("), "{cut}");
+        }
+    }
 }

@@ -7,7 +7,9 @@
 //! and down by turns; to round each direction, and halves always up, adds a quarter of a level to Cb and Cr.
 
 use image::{DynamicImage, GrayImage, RgbImage};
-use libjpeg_turbo_rs::{DecodeLimits, Decoder, FrameHeader, PixelFormat};
+use libjpeg_turbo_rs::{DecodeLimits, Decoder, FrameHeader, JpegError, PixelFormat};
+
+use crate::images::damaged;
 
 /// More scans are refused: a few bytes can ask for one more pass over all pixels. Real files have some ten.
 const MAX_SCANS: usize = 100;
@@ -27,16 +29,25 @@ pub fn decode(bytes: &[u8], max_texels: u64) -> Result<DynamicImage, String> {
         max_memory: Some(max_texels * MAX_BYTES_PER_TEXEL),
         ..DecodeLimits::default()
     };
-    let mut decoder = Decoder::new_with_limits(bytes, limits).map_err(|e| e.to_string())?;
+    let mut decoder = Decoder::new_with_limits(bytes, limits).map_err(not_decoded)?;
     let format = output_format(decoder.header())?;
     decoder.set_output_format(format);
-    let image = decoder.decode_image().map_err(|e| e.to_string())?;
+    let image = decoder.decode_image().map_err(not_decoded)?;
     let (width, height) = (image.width as u32, image.height as u32);
     let pixels = match format {
         PixelFormat::Grayscale => GrayImage::from_raw(width, height, image.data).map(DynamicImage::from),
         _ => RgbImage::from_raw(width, height, image.data).map(DynamicImage::from),
     };
     pixels.ok_or_else(|| "it has fewer pixels than its header says".into())
+}
+
+fn not_decoded(error: JpegError) -> String {
+    match error {
+        JpegError::Unsupported(_) | JpegError::LimitExceeded { .. } | JpegError::AllocationFailed { .. } => {
+            error.to_string()
+        }
+        _ => damaged(&error.to_string()),
+    }
 }
 
 /// Refuses what is not read, and what the decoder would not survive.
