@@ -108,7 +108,7 @@ fn kernels_agree_to_the_bit() {
     let ray = |i: u32| {
         // Some along planes and axes.
         let direction = at(i * 7 + 3) * Vec3::new((i % 5) as f32, (i % 3) as f32, 1.0);
-        let t_max = if i % 4 == 0 { 0.5 } else { f32::INFINITY };
+        let t_max = if i.is_multiple_of(4) { 0.5 } else { f32::INFINITY };
         Ray { t_max, ..Ray::new(at(i * 3 + 1), direction) }
     };
     let mut rays: Vec<Ray> = (0..5000).map(ray).collect();
