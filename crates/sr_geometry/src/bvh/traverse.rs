@@ -1,4 +1,7 @@
 //! Walking a tree with a ray, front to back.
+//!
+//! In: a ray and the root of a tree of more triangles than [`super::scan`] takes. Out: the closest hit, or whether there
+//! is any. `sheared` meets triangles, `slabs` boxes.
 
 use std::mem::MaybeUninit;
 

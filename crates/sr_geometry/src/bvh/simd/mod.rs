@@ -31,7 +31,7 @@ pub(super) trait Lanes: Copy {
     /// How many, a divisor of [`WIDE`].
     const COUNT: usize;
     fn splat(self, x: f32) -> Self::F;
-    /// v[order[0]], v[order[1]], v[order[2]]
+    /// `[v[order[0]], v[order[1]], v[order[2]]]`
     fn permute(self, v: Vec3A, order: &Order) -> Vec3A;
     /// `x[part * COUNT ..][.. COUNT]`
     fn load_part(self, x: &[f32; WIDE], part: usize) -> Self::F;
