@@ -14,6 +14,7 @@
 //!
 //! Reading order: `ray`, `shape`, `geometry`, `surface`, then `bvh`.
 
+mod batch;
 mod bounds;
 mod bvh;
 mod disk;
@@ -25,6 +26,7 @@ mod shape;
 mod sphere;
 mod surface;
 
+pub use batch::{BATCH, Hits, Rays, Surfaces, Vec2s, Vec3s};
 pub use bounds::Bounds3;
 pub use geometry::{Geometry, ShapeRef};
 pub use ray::{Hit, NO_INSTANCE, Ray, ShapeId};
