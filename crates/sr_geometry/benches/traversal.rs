@@ -9,7 +9,7 @@ mod common;
 use common::{OwnedMesh, Random, closed_box, soup};
 use divan::{Bencher, counter::ItemsCount};
 use glam::{Quat, Vec3};
-use sr_geometry::{Geometry, Hit, Ray};
+use sr_geometry::{BATCH, Geometry, Hit, Hits, Ray, Rays};
 
 const RAYS: usize = 1 << 16;
 
@@ -78,17 +78,60 @@ fn closest(bencher: Bencher<'_, '_>, triangles: usize) {
         .bench(|| rays.iter().filter_map(|ray| geometry.intersect(ray)).map(|hit| hit.t).sum::<f32>());
 }
 
-/// Shadow rays: towards points of a square below the top of the cube.
+/// The same in batches.
 #[divan::bench(args = [38, 1_000, 100_000, 1_000_000])]
-fn any(bencher: Bencher<'_, '_>, triangles: usize) {
+fn closest_batch(bencher: Bencher<'_, '_>, triangles: usize) {
     let geometry = scene(triangles);
+    let batches = batches(&leaving_rays(&geometry));
+    let mut hits = Hits::NONE;
+    bencher.counter(ItemsCount::new(RAYS)).bench_local(|| {
+        let sum = |rays: &Rays| {
+            geometry.intersect_batch(rays, BATCH, &mut hits);
+            hits.t.iter().filter(|t| t.is_finite()).sum::<f32>()
+        };
+        batches.iter().map(sum).sum::<f32>()
+    });
+}
+
+fn batches(rays: &[Ray]) -> Vec<Rays> {
+    let batch = |rays: &[Ray]| {
+        let mut batch = Rays::NONE;
+        rays.iter().enumerate().for_each(|(i, ray)| batch.set(i, ray));
+        batch
+    };
+    rays.chunks(BATCH).map(batch).collect()
+}
+
+/// Shadow rays: towards points of a square below the top of the cube.
+fn shadow_rays(geometry: &Geometry) -> Vec<Ray> {
     let mut random = Random(5);
     let mut aim = |ray: Ray| {
         let target = Vec3::new(random.unit() * 0.5 - 0.25, 0.979, random.unit() * 0.4 - 0.2);
         Ray { direction: target - ray.origin, t_max: 0.9999, ..ray }
     };
-    let rays: Vec<Ray> = leaving_rays(&geometry).into_iter().map(&mut aim).collect();
+    leaving_rays(geometry).into_iter().map(&mut aim).collect()
+}
+
+#[divan::bench(args = [38, 1_000, 100_000, 1_000_000])]
+fn any(bencher: Bencher<'_, '_>, triangles: usize) {
+    let geometry = scene(triangles);
+    let rays = shadow_rays(&geometry);
     bencher.counter(ItemsCount::new(RAYS)).bench(|| rays.iter().filter(|ray| geometry.occluded(ray)).count());
+}
+
+/// The same in batches.
+#[divan::bench(args = [38, 1_000, 100_000, 1_000_000])]
+fn any_batch(bencher: Bencher<'_, '_>, triangles: usize) {
+    let geometry = scene(triangles);
+    let batches = batches(&shadow_rays(&geometry));
+    let mut occluded = [false; BATCH];
+    bencher.counter(ItemsCount::new(RAYS)).bench_local(|| {
+        let count = |rays: &Rays| {
+            geometry.occluded_batch(rays, BATCH, &mut occluded);
+            occluded.iter().filter(|&&occluded| occluded).count()
+        };
+        batches.iter().map(count).sum::<usize>()
+    });
 }
 
 /// From hit to position, normals, texture coordinates.

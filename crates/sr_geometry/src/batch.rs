@@ -203,17 +203,15 @@ impl Surfaces {
 }
 
 impl Geometry {
-    /// The closest hits of the first `count` rays.
+    /// The closest hits of the first `count` rays. What `hits` holds beyond them is left open.
     pub fn intersect_batch(&self, rays: &Rays, count: usize, hits: &mut Hits) {
-        for i in 0..count {
-            hits.set(i, self.intersect(&rays.get(i)).as_ref());
-        }
+        let meet_other = |other, ray: &_| self.intersect_other(other, ray);
+        self.bvh.intersect_batch(&self.world, (rays, count), meet_other, hits);
     }
 
-    /// Which of the first `count` rays hit anything?
+    /// Which of the first `count` rays hit anything? What `occluded` holds beyond them is left open.
     pub fn occluded_batch(&self, rays: &Rays, count: usize, occluded: &mut [bool; BATCH]) {
-        for (i, occluded) in occluded[..count].iter_mut().enumerate() {
-            *occluded = self.occluded(&rays.get(i));
-        }
+        let meet_other = |other, ray: &_| self.intersect_other(other, ray);
+        self.bvh.occluded_batch(&self.world, (rays, count), meet_other, occluded);
     }
 }

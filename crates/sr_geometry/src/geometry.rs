@@ -24,8 +24,8 @@ pub struct Geometry {
     disks: Vec<Disk>,
     instances: Vec<PlacedGroup>,
     others: Vec<Other>,
-    bvh: Bvh,
-    world: Tree,
+    pub(crate) bvh: Bvh,
+    pub(crate) world: Tree,
     groups: Vec<Tree>,
 }
 
@@ -197,7 +197,7 @@ impl Geometry {
 
     /// Out of line, so that the walk over triangles stays small.
     #[inline(never)]
-    fn intersect_other(&self, other: u32, ray: &Ray) -> Option<Hit> {
+    pub(crate) fn intersect_other(&self, other: u32, ray: &Ray) -> Option<Hit> {
         match self.others[other as usize] {
             Other::Sphere { shape, index } => {
                 let t = self.spheres[index as usize].intersect(ray)?;

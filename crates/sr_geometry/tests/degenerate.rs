@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{OwnedMesh, Random, check_against_brute_force, soup};
+use common::{OwnedMesh, Random, check_against_brute_force, meet_batch, meet_both, soup};
 use glam::{Affine3A, Mat3, Vec2, Vec3};
 use sr_geometry::{
     Geometry, GeometryError, GeometryInput, Instance, MeshError, Ray, Shape, Sphere, TriangleMesh,
@@ -12,8 +12,7 @@ use sr_geometry::{
 fn an_empty_scene_is_never_hit() {
     let geometry = Geometry::build(GeometryInput::default()).unwrap();
     let ray = Ray::new(Vec3::ZERO, Vec3::X);
-    assert_eq!(geometry.intersect(&ray), None);
-    assert!(!geometry.occluded(&ray));
+    assert_eq!(meet_both(&geometry, &ray), [(None, false); 2]);
     assert!(geometry.bounds().is_empty());
 
     let empty_group = GeometryInput {
@@ -44,21 +43,23 @@ fn rays_that_are_none_hit_nothing() {
                 rays.extend([Ray::new(v, Vec3::X), Ray::new(Vec3::ZERO, v), Ray::new(v, v)]);
             }
         }
-        for ray in rays {
-            assert_eq!(geometry.intersect(&ray), None, "{ray:?}");
-            assert!(!geometry.occluded(&ray), "{ray:?}");
+        for ray in &rays {
+            assert_eq!(meet_both(&geometry, ray), [(None, false); 2], "{ray:?}");
         }
+        assert!(meet_batch(&geometry, &rays).into_iter().all(|met| met == (None, false)));
     }
 }
 
 #[test]
 fn extreme_directions_neither_hang_nor_panic() {
-    let geometry = soup(&mut Random(32), 1000, 0.5).build();
+    let geometries = [30, 1000].map(|count| soup(&mut Random(32), count, 0.5).build());
     for exponent in [-45, -40, -30, -20, 20, 30, 37] {
         for direction in [Vec3::X, Vec3::new(1.0, -1.0, 0.5), Vec3::new(1e-9, 0.0, 1.0)] {
             let ray = Ray::new(Vec3::ZERO, direction * 10f32.powi(exponent));
-            let _ = geometry.intersect(&ray);
-            let _ = geometry.occluded(&ray);
+            for geometry in &geometries {
+                let [single, in_batch] = meet_both(geometry, &ray);
+                assert_eq!(single.0.map(|hit| hit.primitive), in_batch.0.map(|hit| hit.primitive));
+            }
         }
     }
 }
@@ -102,19 +103,23 @@ fn scales_from_tiny_to_huge() {
     let mut random = Random(35);
     for exponent in [-9, -6, 6, 9] {
         let size = 10f32.powi(exponent);
-        let mesh = soup(&mut random, 300, 0.3);
-        let unit = mesh.build();
-        let scaled = mesh.transformed(|p| size * p).build();
-        for _ in 0..500 {
-            let ray = Ray::new(random.cube(), random.direction());
-            let big = Ray { origin: size * ray.origin, ..ray };
-            let (hit, scaled_hit) = (unit.intersect(&ray), scaled.intersect(&big));
-            if let (Some(a), Some(b)) = (hit, scaled_hit) {
-                assert!(a.primitive != b.primitive || (b.t / a.t / size - 1.0).abs() < 1e-3);
+        for count in [40, 300] {
+            let mesh = soup(&mut random, count, 0.3);
+            let unit = mesh.build();
+            let scaled = mesh.transformed(|p| size * p).build();
+            for _ in 0..500 {
+                let ray = Ray::new(random.cube(), random.direction());
+                let big = Ray { origin: size * ray.origin, ..ray };
+                let met = meet_both(&unit, &ray).into_iter().zip(meet_both(&scaled, &big));
+                for ((hit, _), (scaled_hit, _)) in met {
+                    if let (Some(a), Some(b)) = (hit, scaled_hit) {
+                        assert!(a.primitive != b.primitive || (b.t / a.t / size - 1.0).abs() < 1e-3);
+                    }
+                    check_against_brute_force(&unit, &ray, hit, 1e-3);
+                    let back = scaled_hit.map(|hit| sr_geometry::Hit { t: hit.t / size, ..hit });
+                    check_against_brute_force(&unit, &ray, back, 2e-3);
+                }
             }
-            check_against_brute_force(&unit, &ray, hit, 1e-3);
-            let back = scaled_hit.map(|hit| sr_geometry::Hit { t: hit.t / size, ..hit });
-            check_against_brute_force(&unit, &ray, back, 2e-3);
         }
     }
 }

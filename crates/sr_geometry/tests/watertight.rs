@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{OwnedMesh, Random, closed_box};
+use common::{OwnedMesh, Random, closed_box, meet_both};
 use glam::{Quat, Vec3};
 use sr_geometry::Ray;
 
@@ -20,10 +20,11 @@ fn assert_closed(mesh: &OwnedMesh, random: &mut Random, what: &str) {
             let towards = mesh.positions[random.below(mesh.positions.len())];
             let origin = center + 0.5 * random.unit() * (towards - center);
             let ray = Ray::new(origin, target - origin);
-            let hit =
-                geometry.intersect(&ray).unwrap_or_else(|| panic!("{what}: {ray:?} escaped at {target}"));
-            assert!((hit.t - 1.0).abs() < 1e-2, "{what}: {ray:?} met the wall at t = {}", hit.t);
-            assert!(geometry.occluded(&ray), "{what}: {ray:?} is occluded");
+            for (hit, occluded) in meet_both(&geometry, &ray) {
+                let hit = hit.unwrap_or_else(|| panic!("{what}: {ray:?} escaped at {target}"));
+                assert!((hit.t - 1.0).abs() < 1e-2, "{what}: {ray:?} met the wall at t = {}", hit.t);
+                assert!(occluded, "{what}: {ray:?} is occluded");
+            }
         }
     }
 }
@@ -31,7 +32,7 @@ fn assert_closed(mesh: &OwnedMesh, random: &mut Random, what: &str) {
 #[test]
 fn boxes_in_any_pose() {
     let mut random = Random(11);
-    for n in [1, 3, 10] {
+    for n in [1, 2, 3, 10] {
         let mesh = closed_box(n);
         assert_closed(&mesh, &mut random, "axis-aligned");
         for i in 0..50 {
@@ -50,13 +51,20 @@ fn far_from_the_origin() {
     let mut random = Random(12);
     for _ in 0..20 {
         let at = 1e6 * random.cube();
-        assert_closed(&closed_box(4).transformed(|p| 1e3 * p + at), &mut random, "far");
+        for n in [1, 4] {
+            assert_closed(&closed_box(n).transformed(|p| 1e3 * p + at), &mut random, "far");
+        }
     }
 }
 
 #[test]
 fn along_axes_at_vertices() {
-    let mesh = closed_box(8);
+    for n in [1, 2, 8] {
+        along_axes(&closed_box(n));
+    }
+}
+
+fn along_axes(mesh: &OwnedMesh) {
     let geometry = mesh.build();
     for p in &mesh.positions {
         for axis in 0..3 {
@@ -66,10 +74,9 @@ fn along_axes_at_vertices() {
                     direction[axis] = sign;
                     let mut origin = *p;
                     origin[axis] = 0.0;
-                    assert!(
-                        geometry.intersect(&Ray::new(origin, direction)).is_some(),
-                        "{origin} {direction}"
-                    );
+                    for (hit, occluded) in meet_both(&geometry, &Ray::new(origin, direction)) {
+                        assert!(hit.is_some() && occluded, "{origin} {direction}");
+                    }
                 }
             }
         }

@@ -60,7 +60,7 @@ impl Bvh {
 
 /// Was anything hit? `few` meets few triangles, `eight` walks trees.
 #[inline(always)]
-fn meet<S: Simd, L: Lanes, const ANY: bool>(
+pub(super) fn meet<S: Simd, L: Lanes, const ANY: bool>(
     eight: S,
     few: L,
     (bvh, tree): (&Bvh, &Tree),
@@ -70,7 +70,7 @@ fn meet<S: Simd, L: Lanes, const ANY: bool>(
 ) -> bool {
     match tree.form {
         Form::Nodes(root) => walk::<_, ANY>(eight, bvh, (root, &tree.bounds), ray, meet_other, closest),
-        Form::Few { first, count, extent } => {
+        Form::Few { first, count, extent, .. } => {
             let blocks = &bvh.few[first as usize..][..(count as usize).div_ceil(WIDE)];
             scan::<_, ANY>(few, (blocks, count as usize, extent), ray, closest)
         }

@@ -7,8 +7,11 @@
 //!
 //! Invariant: every tree is at most [`MAX_DEPTH`] nodes deep, so the traversal stack cannot overflow.
 
+mod batch;
 mod build;
 mod dispatch;
+mod packet;
+mod pieces;
 mod scan;
 mod sheared;
 mod simd;
@@ -25,6 +28,7 @@ use crate::{Bounds3, Hit, NO_INSTANCE, ShapeId};
 use simd::Kernel;
 
 use build::MAX_DEPTH;
+use pieces::Pieces;
 
 /// Children of a node, and triangles of a block.
 pub(crate) const WIDTH: usize = 8;
@@ -188,14 +192,15 @@ pub(crate) struct Tree {
 enum Form {
     /// Below a node.
     Nodes(NodeRef),
-    /// As `count` triangles in wide blocks from `first` on, without nodes; `extent` is the longest side of their box.
-    Few { first: u32, count: u32, extent: f32 },
+    /// As `count` triangles in wide blocks from `first` on, without nodes, and as `pieces` if they are fit for packets;
+    /// `extent` is the longest side of their box.
+    Few { first: u32, count: u32, extent: f32, pieces: Option<u32> },
 }
 
 impl Tree {
     /// The tree without primitives.
     pub const EMPTY: Self =
-        Self { form: Form::Few { first: 0, count: 0, extent: 0.0 }, bounds: Bounds3::EMPTY };
+        Self { form: Form::Few { first: 0, count: 0, extent: 0.0, pieces: None }, bounds: Bounds3::EMPTY };
 }
 
 /// The arrays that all trees share.
@@ -204,6 +209,7 @@ pub(crate) struct Bvh {
     nodes: Vec<Node>,
     blocks: Vec<TriangleBlock<WIDTH>>,
     few: Vec<TriangleBlock<WIDE>>,
+    pieces: Vec<Pieces>,
     kernel: Kernel,
     /// Is the tree so large that memory is worth asking for ahead of need?
     prefetches: bool,
@@ -212,7 +218,14 @@ pub(crate) struct Bvh {
 impl Bvh {
     pub fn new() -> Self {
         let kernel = Kernel::detect();
-        Self { nodes: Vec::new(), blocks: Vec::new(), few: Vec::new(), kernel, prefetches: false }
+        Self {
+            nodes: Vec::new(),
+            blocks: Vec::new(),
+            few: Vec::new(),
+            pieces: Vec::new(),
+            kernel,
+            prefetches: false,
+        }
     }
 
     /// Builds a tree over `prims`, which it reorders. `vertices_of` fetches a triangle's vertices.
@@ -224,7 +237,12 @@ impl Bvh {
         let bounds = prims.par_iter().map(|p| p.bounds).reduce(|| Bounds3::EMPTY, Bounds3::union);
         if prims.len() <= FEW && prims.iter().all(PrimRef::is_triangle) {
             let (first, count) = (self.few.len() as u32, prims.len() as u32);
-            let form = Form::Few { first, count, extent: (bounds.max - bounds.min).max_element() };
+            let extent = bounds.extent().max_element();
+            let pieces = Pieces::new(prims, extent, &vertices_of).map(|pieces| {
+                self.pieces.push(pieces);
+                self.pieces.len() as u32 - 1
+            });
+            let form = Form::Few { first, count, extent, pieces };
             self.few.extend(prims.chunks(WIDE).map(|prims| TriangleBlock::new(prims, &vertices_of)));
             return Tree { form, bounds };
         }
@@ -242,6 +260,9 @@ impl Bvh {
 
     /// Bytes of nodes and blocks.
     pub fn memory_bytes(&self) -> usize {
-        size_of_val(&self.nodes[..]) + size_of_val(&self.blocks[..]) + size_of_val(&self.few[..])
+        size_of_val(&self.nodes[..])
+            + size_of_val(&self.blocks[..])
+            + size_of_val(&self.few[..])
+            + self.pieces.iter().map(Pieces::memory_bytes).sum::<usize>()
     }
 }

@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::simd::Kernel;
 use super::{Bvh, FEW, Form, MAX_DEPTH, NodeRef, PrimRef, Tree, WIDE};
-use crate::{Bounds3, Ray, ShapeId};
+use crate::{BATCH, Bounds3, Hit, Hits, Ray, Rays, ShapeId};
 
 /// A triangle at `at` with edges of about `size`.
 fn triangle(at: Vec3, size: f32, i: u32) -> [Vec3; 3] {
@@ -87,6 +87,21 @@ fn the_depth_is_bounded_where_the_heuristic_peels_off_one_at_a_time() {
     check_tree(&[triangle(Vec3::ONE, 1.0, 3); 5000]);
 }
 
+/// Meets rays in batches of `count`.
+fn meet_batches(bvh: &Bvh, tree: &Tree, rays: &[Ray], count: usize) -> Vec<(Option<Hit>, bool)> {
+    let mut met = Vec::new();
+    for rays in rays.chunks(count) {
+        let (mut batch, mut hits, mut occluded) = (Rays::NONE, Hits::NONE, [false; BATCH]);
+        for (i, ray) in rays.iter().enumerate() {
+            batch.set(i, ray);
+        }
+        bvh.intersect_batch(tree, (&batch, rays.len()), |_, _| None, &mut hits);
+        bvh.occluded_batch(tree, (&batch, rays.len()), |_, _| None, &mut occluded);
+        met.extend((0..rays.len()).map(|i| (hits.get(i), occluded[i])));
+    }
+    met
+}
+
 /// Holds all kernels against one another.
 fn check_kernels(triangles: &[[Vec3; 3]], rays: &[Ray]) -> usize {
     let (mut bvh, tree) = build(triangles);
@@ -94,10 +109,16 @@ fn check_kernels(triangles: &[[Vec3; 3]], rays: &[Ray]) -> usize {
     let hits = |bvh: &Bvh| -> Vec<_> {
         rays.iter().map(|ray| (bvh.intersect(&tree, ray, none), bvh.occluded(&tree, ray, none))).collect()
     };
-    let detected = hits(&bvh);
+    let (detected, in_batches) = (hits(&bvh), meet_batches(&bvh, &tree, rays, BATCH));
     for kernel in Kernel::available() {
         bvh.kernel = kernel;
         assert_eq!(detected, hits(&bvh), "{kernel:?}");
+        for count in [BATCH, 21] {
+            assert_eq!(in_batches, meet_batches(&bvh, &tree, rays, count), "{kernel:?}, {count} at a time");
+        }
+    }
+    if let Form::Nodes(_) = tree.form {
+        assert_eq!(detected, in_batches);
     }
     detected.iter().filter(|(hit, _)| hit.is_some()).count()
 }

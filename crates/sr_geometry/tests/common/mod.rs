@@ -3,7 +3,9 @@
 #![allow(dead_code, reason = "each test uses a part")]
 
 use glam::{DVec3, Vec3};
-use sr_geometry::{Geometry, GeometryInput, Hit, Ray, Shape, ShapeId, ShapeRef, TriangleMesh};
+use sr_geometry::{
+    BATCH, Geometry, GeometryInput, Hit, Hits, Ray, Rays, Shape, ShapeId, ShapeRef, TriangleMesh,
+};
 
 /// Uniform numbers by SplitMix64 (Steele, Lea & Flood 2014).
 pub struct Random(pub u64);
@@ -119,8 +121,24 @@ pub fn closed_box(n: u32) -> OwnedMesh {
     mesh
 }
 
+/// The closest hits, and whether there are any, of up to [`BATCH`] rays at a time.
+pub fn meet_batch(geometry: &Geometry, rays: &[Ray]) -> Vec<(Option<Hit>, bool)> {
+    let (mut batch, mut hits, mut occluded) = (Rays::NONE, Hits::NONE, [false; BATCH]);
+    for (i, ray) in rays.iter().enumerate() {
+        batch.set(i, ray);
+    }
+    geometry.intersect_batch(&batch, rays.len(), &mut hits);
+    geometry.occluded_batch(&batch, rays.len(), &mut occluded);
+    (0..rays.len()).map(|i| (hits.get(i), occluded[i])).collect()
+}
+
+/// The closest hit of a ray, and whether there is any: by itself, and as one of a batch.
+pub fn meet_both(geometry: &Geometry, ray: &Ray) -> [(Option<Hit>, bool); 2] {
+    [(geometry.intersect(ray), geometry.occluded(ray)), meet_batch(geometry, &[*ray])[0]]
+}
+
 /// t and barycentric coordinates of the line's meeting with the triangle's plane, in `f64`.
-fn meet(ray: &Ray, vertices: [Vec3; 3]) -> Option<(f64, [f64; 3])> {
+fn meet_plane(ray: &Ray, vertices: [Vec3; 3]) -> Option<(f64, [f64; 3])> {
     let [a, b, c] = vertices.map(|v| v.as_dvec3() - ray.origin.as_dvec3());
     let d = ray.direction.as_dvec3();
     let n = (b - a).cross(c - a);
@@ -133,8 +151,8 @@ fn meet(ray: &Ray, vertices: [Vec3; 3]) -> Option<(f64, [f64; 3])> {
 pub fn check_against_brute_force(geometry: &Geometry, ray: &Ray, hit: Option<Hit>, slack: f64) {
     let mut far = f64::from(ray.t_max);
     if let Some(hit) = hit {
-        let (t, b) =
-            meet(ray, geometry.triangle_vertices(hit.shape, hit.primitive)).expect("hit an edge-on triangle");
+        let (t, b) = meet_plane(ray, geometry.triangle_vertices(hit.shape, hit.primitive))
+            .expect("hit an edge-on triangle");
         assert!(b.iter().all(|&b| b > -slack), "{ray:?} {hit:?}: outside the triangle, {b:?}");
         assert!((t - f64::from(hit.t)).abs() <= slack * t.abs().max(1.0), "{ray:?} {hit:?}: t should be {t}");
         far = f64::from(hit.t);
@@ -144,7 +162,7 @@ pub fn check_against_brute_force(geometry: &Geometry, ray: &Ray, hit: Option<Hit
             continue;
         }
         for triangle in 0..geometry.primitive_count(shape) {
-            let Some((t, b)) = meet(ray, geometry.triangle_vertices(shape, triangle)) else { continue };
+            let Some((t, b)) = meet_plane(ray, geometry.triangle_vertices(shape, triangle)) else { continue };
             let clearly = b.iter().all(|&b| b > slack) && t > slack && t < far - slack * far.abs().max(1.0);
             assert!(!clearly, "{ray:?} {hit:?}: missed {triangle} of {shape:?} at {t}, {b:?}");
         }

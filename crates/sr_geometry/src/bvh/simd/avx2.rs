@@ -61,6 +61,30 @@ impl Lanes for Avx2 {
         avx2!(_mm256_loadu_ps(x.as_ptr().add(part * WIDTH)))
     }
     #[inline(always)]
+    fn load_at(self, x: &[f32], first: usize) -> Self::F {
+        let x = &x[first..first + Self::COUNT];
+        avx2!(_mm256_loadu_ps(x.as_ptr()))
+    }
+    #[inline(always)]
+    fn store_at(self, x: Self::F, to: &mut [f32], first: usize) {
+        let to = &mut to[first..first + Self::COUNT];
+        avx2!(_mm256_storeu_ps(to.as_mut_ptr(), x))
+    }
+    #[inline(always)]
+    fn store_bits_at(self, x: Self::F, to: &mut [u32], first: usize) {
+        let to = &mut to[first..first + Self::COUNT];
+        avx2!(_mm256_storeu_ps(to.as_mut_ptr().cast(), x))
+    }
+    #[inline(always)]
+    fn gather(self, table: &[u32], at: Self::F) -> Self::F {
+        let last = table.len().checked_sub(1).expect("a table has entries") as i32;
+        // Within the table, as the minimum is.
+        avx2!({
+            let at = _mm256_min_epu32(_mm256_cvttps_epi32(at), _mm256_set1_epi32(last));
+            _mm256_i32gather_ps::<4>(table.as_ptr().cast(), at)
+        })
+    }
+    #[inline(always)]
     fn extract(self, x: Self::F, lane: usize) -> f32 {
         avx2!(_mm256_cvtss_f32(_mm256_permutevar8x32_ps(x, _mm256_set1_epi32(lane as i32))))
     }
@@ -89,6 +113,14 @@ impl Lanes for Avx2 {
         avx2!(_mm256_max_ps(a, b))
     }
     #[inline(always)]
+    fn abs(self, x: Self::F) -> Self::F {
+        avx2!(_mm256_andnot_ps(_mm256_set1_ps(-0.0), x))
+    }
+    #[inline(always)]
+    fn flip(self, x: Self::F, sign: Self::F) -> Self::F {
+        avx2!(_mm256_xor_ps(x, _mm256_and_ps(sign, _mm256_set1_ps(-0.0))))
+    }
+    #[inline(always)]
     fn le(self, a: Self::F, b: Self::F) -> Self::Mask {
         avx2!(_mm256_cmp_ps::<_CMP_LE_OQ>(a, b))
     }
@@ -103,6 +135,10 @@ impl Lanes for Avx2 {
     #[inline(always)]
     fn or(self, a: Self::Mask, b: Self::Mask) -> Self::Mask {
         avx2!(_mm256_or_ps(a, b))
+    }
+    #[inline(always)]
+    fn and_not(self, a: Self::Mask, b: Self::Mask) -> Self::Mask {
+        avx2!(_mm256_andnot_ps(b, a))
     }
     #[inline(always)]
     fn bits(self, mask: Self::Mask) -> u32 {

@@ -56,6 +56,30 @@ impl Lanes for Avx512 {
         avx512!(_mm512_loadu_ps(x.as_ptr()))
     }
     #[inline(always)]
+    fn load_at(self, x: &[f32], first: usize) -> Self::F {
+        let x = &x[first..first + Self::COUNT];
+        avx512!(_mm512_loadu_ps(x.as_ptr()))
+    }
+    #[inline(always)]
+    fn store_at(self, x: Self::F, to: &mut [f32], first: usize) {
+        let to = &mut to[first..first + Self::COUNT];
+        avx512!(_mm512_storeu_ps(to.as_mut_ptr(), x))
+    }
+    #[inline(always)]
+    fn store_bits_at(self, x: Self::F, to: &mut [u32], first: usize) {
+        let to = &mut to[first..first + Self::COUNT];
+        avx512!(_mm512_storeu_ps(to.as_mut_ptr().cast(), x))
+    }
+    #[inline(always)]
+    fn gather(self, table: &[u32], at: Self::F) -> Self::F {
+        let last = table.len().checked_sub(1).expect("a table has entries") as i32;
+        // Within the table, as the minimum is.
+        avx512!({
+            let at = _mm512_min_epu32(_mm512_cvttps_epi32(at), _mm512_set1_epi32(last));
+            _mm512_castsi512_ps(_mm512_i32gather_epi32::<4>(at, table.as_ptr().cast()))
+        })
+    }
+    #[inline(always)]
     fn extract(self, x: Self::F, lane: usize) -> f32 {
         avx512!(_mm512_cvtss_f32(_mm512_permutexvar_ps(_mm512_set1_epi32(lane as i32), x)))
     }
@@ -84,6 +108,14 @@ impl Lanes for Avx512 {
         avx512!(_mm512_max_ps(a, b))
     }
     #[inline(always)]
+    fn abs(self, x: Self::F) -> Self::F {
+        avx512!(_mm512_abs_ps(x))
+    }
+    #[inline(always)]
+    fn flip(self, x: Self::F, sign: Self::F) -> Self::F {
+        avx512!(_mm512_xor_ps(x, _mm512_and_ps(sign, _mm512_set1_ps(-0.0))))
+    }
+    #[inline(always)]
     fn le(self, a: Self::F, b: Self::F) -> Self::Mask {
         avx512!(_mm512_cmp_ps_mask::<_CMP_LE_OQ>(a, b))
     }
@@ -98,6 +130,10 @@ impl Lanes for Avx512 {
     #[inline(always)]
     fn or(self, a: Self::Mask, b: Self::Mask) -> Self::Mask {
         a | b
+    }
+    #[inline(always)]
+    fn and_not(self, a: Self::Mask, b: Self::Mask) -> Self::Mask {
+        a & !b
     }
     #[inline(always)]
     fn bits(self, mask: Self::Mask) -> u32 {

@@ -35,6 +35,14 @@ pub(super) trait Lanes: Copy {
     fn permute(self, v: Vec3A, order: &Order) -> Vec3A;
     /// `x[part * COUNT ..][.. COUNT]`
     fn load_part(self, x: &[f32; WIDE], part: usize) -> Self::F;
+    /// `x[first ..][.. COUNT]`
+    fn load_at(self, x: &[f32], first: usize) -> Self::F;
+    /// Writes `to[first ..][.. COUNT]`.
+    fn store_at(self, x: Self::F, to: &mut [f32], first: usize);
+    /// Writes the bits to `to[first ..][.. COUNT]`.
+    fn store_bits_at(self, x: Self::F, to: &mut [u32], first: usize);
+    /// The bits `table[at[i]]`, where `at` are whole numbers; those beyond the end of the table mean its last entry.
+    fn gather(self, table: &[u32], at: Self::F) -> Self::F;
     /// x[lane]; `lane` is taken modulo the count.
     fn extract(self, x: Self::F, lane: usize) -> f32;
     fn add(self, a: Self::F, b: Self::F) -> Self::F;
@@ -43,12 +51,17 @@ pub(super) trait Lanes: Copy {
     fn div(self, a: Self::F, b: Self::F) -> Self::F;
     fn min(self, a: Self::F, b: Self::F) -> Self::F;
     fn max(self, a: Self::F, b: Self::F) -> Self::F;
+    fn abs(self, x: Self::F) -> Self::F;
+    /// x[i], negated where `sign[i]` has its sign bit set.
+    fn flip(self, x: Self::F, sign: Self::F) -> Self::F;
     /// a[i] ≤ b[i]; false where either is NaN.
     fn le(self, a: Self::F, b: Self::F) -> Self::Mask;
     /// a[i] < b[i]; false where either is NaN.
     fn lt(self, a: Self::F, b: Self::F) -> Self::Mask;
     fn and(self, a: Self::Mask, b: Self::Mask) -> Self::Mask;
     fn or(self, a: Self::Mask, b: Self::Mask) -> Self::Mask;
+    /// a, but not b.
+    fn and_not(self, a: Self::Mask, b: Self::Mask) -> Self::Mask;
     /// Bit i: is lane i set?
     fn bits(self, mask: Self::Mask) -> u32;
     /// The lanes whose bits are set.

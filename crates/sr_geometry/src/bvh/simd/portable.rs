@@ -34,6 +34,23 @@ impl Lanes for Portable {
         each(|i| x[part * WIDTH + i])
     }
     #[inline(always)]
+    fn load_at(self, x: &[f32], first: usize) -> Self::F {
+        let x = &x[first..first + WIDTH];
+        each(|i| x[i])
+    }
+    #[inline(always)]
+    fn store_at(self, x: Self::F, to: &mut [f32], first: usize) {
+        to[first..first + WIDTH].copy_from_slice(&x);
+    }
+    #[inline(always)]
+    fn store_bits_at(self, x: Self::F, to: &mut [u32], first: usize) {
+        to[first..first + WIDTH].copy_from_slice(&x.map(f32::to_bits));
+    }
+    #[inline(always)]
+    fn gather(self, table: &[u32], at: Self::F) -> Self::F {
+        each(|i| f32::from_bits(table[(at[i] as usize).min(table.len() - 1)]))
+    }
+    #[inline(always)]
     fn extract(self, x: Self::F, lane: usize) -> f32 {
         x[lane % WIDTH]
     }
@@ -62,6 +79,14 @@ impl Lanes for Portable {
         each(|i| if a[i] > b[i] { a[i] } else { b[i] })
     }
     #[inline(always)]
+    fn abs(self, x: Self::F) -> Self::F {
+        each(|i| x[i].abs())
+    }
+    #[inline(always)]
+    fn flip(self, x: Self::F, sign: Self::F) -> Self::F {
+        each(|i| f32::from_bits(x[i].to_bits() ^ (sign[i].to_bits() & 1 << 31)))
+    }
+    #[inline(always)]
     fn le(self, a: Self::F, b: Self::F) -> Self::Mask {
         each(|i| a[i] <= b[i])
     }
@@ -76,6 +101,10 @@ impl Lanes for Portable {
     #[inline(always)]
     fn or(self, a: Self::Mask, b: Self::Mask) -> Self::Mask {
         each(|i| a[i] | b[i])
+    }
+    #[inline(always)]
+    fn and_not(self, a: Self::Mask, b: Self::Mask) -> Self::Mask {
+        each(|i| a[i] & !b[i])
     }
     #[inline(always)]
     fn bits(self, mask: Self::Mask) -> u32 {

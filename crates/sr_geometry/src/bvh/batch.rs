@@ -1,0 +1,175 @@
+//! Meeting a tree with many rays: the instruction set is chosen once for all of them.
+//!
+//! Trees of few triangles are met by packets, and by [`scan`] where a packet is in doubt; others ray by ray.
+
+use super::dispatch::meet;
+use super::packet;
+use super::scan::scan;
+#[cfg(target_arch = "x86_64")]
+use super::simd::{Avx2, Avx512};
+use super::simd::{Kernel, Lanes, Simd};
+use super::{Bvh, Form, Pieces, Tree, TriangleBlock, WIDE};
+use crate::{BATCH, Bounds3, Hit, Hits, NO_INSTANCE, Ray, Rays, ShapeId};
+
+impl Bvh {
+    /// The closest hits of the first `count` rays. `meet_other` is as for [`Bvh::intersect`].
+    pub fn intersect_batch(
+        &self,
+        tree: &Tree,
+        (rays, count): (&Rays, usize),
+        meet_other: impl Fn(u32, &Ray) -> Option<Hit>,
+        hits: &mut Hits,
+    ) {
+        self.kernel.run(Closest { batch: Batch { bvh: self, tree, rays, count, meet_other }, hits });
+    }
+
+    /// Which of the first `count` rays hit anything?
+    pub fn occluded_batch(
+        &self,
+        tree: &Tree,
+        (rays, count): (&Rays, usize),
+        meet_other: impl Fn(u32, &Ray) -> Option<Hit>,
+        occluded: &mut [bool; BATCH],
+    ) {
+        self.kernel.run(Any { batch: Batch { bvh: self, tree, rays, count, meet_other }, occluded });
+    }
+}
+
+/// What is done with an instruction set.
+trait Work {
+    /// `few` meets few triangles, `eight` walks trees. Always to be inlined.
+    fn run<S: Simd, L: Lanes>(self, eight: S, few: L);
+}
+
+impl Kernel {
+    #[inline(always)]
+    fn run(self, work: impl Work) {
+        match self {
+            // SAFETY: an `Avx512` is the proof that this processor has these features.
+            #[cfg(target_arch = "x86_64")]
+            Kernel::Avx512(avx512) => unsafe { run_avx512(avx512, work) },
+            // SAFETY: as above.
+            #[cfg(target_arch = "x86_64")]
+            Kernel::Avx2(avx2) => unsafe { run_avx2(avx2, work) },
+            Kernel::Portable(portable) => work.run(portable, portable),
+        }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,bmi1,bmi2,lzcnt")]
+fn run_avx512(avx512: Avx512, work: impl Work) {
+    work.run(avx512.eight(), avx512);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,bmi1,bmi2,lzcnt")]
+fn run_avx2(avx2: Avx2, work: impl Work) {
+    work.run(avx2, avx2);
+}
+
+/// Rays and the tree that they meet.
+struct Batch<'a, F> {
+    bvh: &'a Bvh,
+    tree: &'a Tree,
+    rays: &'a Rays,
+    count: usize,
+    meet_other: F,
+}
+
+/// Few triangles: for packets, and for single rays.
+struct Few<'a> {
+    pieces: (&'a Pieces, &'a Bounds3),
+    triangles: (&'a [TriangleBlock<WIDE>], usize, f32),
+}
+
+impl<F: Fn(u32, &Ray) -> Option<Hit>> Batch<'_, F> {
+    /// Few triangles, if packets can meet them.
+    #[inline(always)]
+    fn few(&self) -> Option<Few<'_>> {
+        let Form::Few { first, count, extent, pieces } = self.tree.form else { return None };
+        let pieces = (&self.bvh.pieces[pieces? as usize], &self.tree.bounds);
+        let count = count as usize;
+        Some(Few {
+            pieces,
+            triangles: (&self.bvh.few[first as usize..][..count.div_ceil(WIDE)], count, extent),
+        })
+    }
+
+    #[inline(always)]
+    fn meet<S: Simd, L: Lanes, const ANY: bool>(&self, eight: S, few: L, i: usize) -> Option<Hit> {
+        let ray = self.rays.get(i);
+        let mut hit = no_hit_before(ray.t_max);
+        meet::<_, _, ANY>(eight, few, (self.bvh, self.tree), &ray, &self.meet_other, &mut hit).then_some(hit)
+    }
+}
+
+#[inline(always)]
+fn no_hit_before(t: f32) -> Hit {
+    Hit { t, b1: 0.0, b2: 0.0, shape: ShapeId(0), primitive: 0, instance: NO_INSTANCE }
+}
+
+/// Takes the lowest of some bits.
+#[inline(always)]
+fn take_lowest(bits: &mut u32) -> Option<usize> {
+    let lowest = bits.trailing_zeros() as usize;
+    let any = *bits != 0;
+    *bits &= bits.wrapping_sub(1);
+    any.then_some(lowest)
+}
+
+struct Closest<'a, F> {
+    batch: Batch<'a, F>,
+    hits: &'a mut Hits,
+}
+
+impl<F: Fn(u32, &Ray) -> Option<Hit>> Work for Closest<'_, F> {
+    #[inline(always)]
+    fn run<S: Simd, L: Lanes>(self, eight: S, lanes: L) {
+        let Self { batch, hits } = self;
+        let Some(few) = batch.few() else {
+            for i in 0..batch.count {
+                hits.set(i, batch.meet::<_, _, false>(eight, lanes, i).as_ref());
+            }
+            return;
+        };
+        for first in (0..batch.count).step_by(L::COUNT) {
+            let mut doubtful = packet::closest(lanes, few.pieces, batch.rays, (first, batch.count), hits);
+            while let Some(lane) = take_lowest(&mut doubtful) {
+                let ray = batch.rays.get(first + lane);
+                let mut hit = no_hit_before(ray.t_max);
+                let found = scan::<_, false>(lanes, few.triangles, &ray, &mut hit);
+                hits.set(first + lane, found.then_some(&hit));
+            }
+        }
+    }
+}
+
+struct Any<'a, F> {
+    batch: Batch<'a, F>,
+    occluded: &'a mut [bool; BATCH],
+}
+
+impl<F: Fn(u32, &Ray) -> Option<Hit>> Work for Any<'_, F> {
+    #[inline(always)]
+    fn run<S: Simd, L: Lanes>(self, eight: S, lanes: L) {
+        let Self { batch, occluded } = self;
+        let Some(few) = batch.few() else {
+            for (i, occluded) in occluded[..batch.count].iter_mut().enumerate() {
+                *occluded = batch.meet::<_, _, true>(eight, lanes, i).is_some();
+            }
+            return;
+        };
+        for first in (0..batch.count).step_by(L::COUNT) {
+            let (mut hit, mut doubtful) = packet::any(lanes, few.pieces, batch.rays, (first, batch.count));
+            while let Some(lane) = take_lowest(&mut doubtful) {
+                let ray = batch.rays.get(first + lane);
+                let mut unused = no_hit_before(ray.t_max);
+                hit |= u32::from(scan::<_, true>(lanes, few.triangles, &ray, &mut unused)) << lane;
+            }
+            for (lane, occluded) in occluded[first..][..L::COUNT].iter_mut().enumerate() {
+                *occluded = hit >> lane & 1 != 0;
+            }
+        }
+    }
+}

@@ -1,0 +1,164 @@
+//! Few triangles, made ready for packets of rays.
+//!
+//! In: triangles. Out: [`Pieces`], a parallelogram wherever two triangles make one, and the triangles that are left.
+//! Most walls and blocks are parallelograms, which cost a ray no more than a triangle each. `packet` meets them.
+
+use glam::{DVec3, Vec3};
+
+use super::PrimRef;
+use crate::ShapeId;
+use crate::offset::ROUNDING;
+
+/// How far the fourth corner of a parallelogram may be from where the others put it, in parts of the edges: rounding.
+const CROOKED: f64 = 4.0 * ROUNDING as f64;
+
+/// Words of a half.
+pub(super) const HALF: usize = 4;
+
+/// The triangle p0, p1, p2 or the parallelogram p0, p1, p3, p2, with edges e1 = p1 − p0 and e2 = p2 − p0.
+///
+/// Edges and normal are multiplied by the power of two that brings the normal's largest component into [1, 2), which
+/// is exact and changes no ratio: products of products neither overflow nor vanish.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Piece {
+    /// p0.
+    pub corner: [f32; 3],
+    /// e1 × e2.
+    pub normal: [f32; 3],
+    /// −e2 and e1: a quarter turn from where coordinates along e1 and along e2 grow.
+    pub across: [[f32; 3]; 2],
+    /// How wrong areas may be, see `packet`.
+    pub slack: f32,
+    /// Where its halves begin in [`Pieces::halves`], a whole number.
+    pub halves: f32,
+}
+
+/// The pieces of a tree.
+#[derive(Debug)]
+pub(super) struct Pieces {
+    pub parallelograms: Vec<Piece>,
+    pub triangles: Vec<Piece>,
+    /// Two of [`HALF`] words for each piece: the triangle with corner p0 and that with p3, or a triangle twice. Words:
+    /// shape, triangle, and which weights barycentric coordinates 1 and 2 are, as bits of the numbers 0, 1, 2: the
+    /// weight of p0 (p3), of p1 (p2), of p2 (p1).
+    pub halves: Vec<u32>,
+    /// How wrong heights over planes may be, see `packet`.
+    pub near: f32,
+    /// The largest slack, at least 1.
+    pub slack: f32,
+}
+
+/// A triangle, and the order in which its vertices are corners of a piece.
+#[derive(Clone, Copy)]
+struct Half<'a> {
+    prim: &'a PrimRef,
+    vertices: &'a [Vec3; 3],
+    order: [usize; 3],
+}
+
+impl Pieces {
+    /// `extent` is the longest side of the triangles' box. `None`: some are too long, thin or small for `f32`.
+    pub fn new(
+        prims: &[PrimRef],
+        extent: f32,
+        vertices_of: impl Fn(ShapeId, u32) -> [Vec3; 3],
+    ) -> Option<Self> {
+        let vertices: Vec<_> = prims.iter().map(|p| vertices_of(ShapeId(p.shape), p.primitive)).collect();
+        let half = |i: usize, order: [usize; 3]| Half { prim: &prims[i], vertices: &vertices[i], order };
+        let mut pieces = Self {
+            parallelograms: Vec::new(),
+            triangles: Vec::new(),
+            halves: Vec::new(),
+            near: 0.0,
+            slack: 1.0,
+        };
+        let mut taken = vec![false; prims.len()];
+        for i in 0..prims.len() {
+            if taken[i] {
+                continue;
+            }
+            let other = (i + 1..prims.len())
+                .filter(|&j| !taken[j])
+                .find_map(|j| parallelogram(&vertices[i], &vertices[j]).map(|(of_i, of_j)| (j, of_i, of_j)));
+            if let Some((j, of_i, of_j)) = other {
+                taken[j] = true;
+                let piece = pieces.piece(half(i, of_i), Some(half(j, of_j)), extent)?;
+                pieces.parallelograms.push(piece);
+            } else {
+                let piece = pieces.piece(half(i, [0, 1, 2]), None, extent)?;
+                pieces.triangles.push(piece);
+            }
+        }
+        Some(pieces)
+    }
+
+    /// Makes a piece, and adds its halves.
+    fn piece(&mut self, first: Half<'_>, second: Option<Half<'_>>, extent: f32) -> Option<Piece> {
+        let [p0, e1, e2] = first.edges();
+        let off = second.map_or(DVec3::ZERO, |second| second.corner(0) - (p0 + e1 + e2));
+        let normal = e1.cross(e2);
+        // From the exponent: a logarithm may round differently elsewhere.
+        let exponent = (normal.abs().max_element().to_bits() >> 52) as i32 - 1023;
+        let scale = 2f64.powi(-exponent);
+        let [e1, e2, off, normal] = [e1, e2, off, normal].map(|v| scale * v);
+        let (extent, unit) = (f64::from(extent), f64::from(ROUNDING));
+        let edges = 24.0 * unit * (length_1(e1) + length_1(e2));
+        let slack = (edges + 24.0 * unit * length_1(normal) / extent + 4.0 * length_1(off)) as f32;
+        let near = (8.0 * unit * length_1(normal) + 2.0 * normal.dot(off).abs() / extent) as f32;
+        let halves = self.halves.len() as f32;
+        self.halves.extend(first.words());
+        self.halves.extend(second.unwrap_or(first).words());
+        self.near = self.near.max(near);
+        self.slack = self.slack.max(slack);
+        let [corner, normal, back, along] = [p0, normal, -e2, e1].map(|v| v.as_vec3().to_array());
+        let fits = [normal, back, along].iter().flatten().all(|x| x.is_finite()) && slack.is_finite();
+        fits.then_some(Piece { corner, normal, across: [back, along], slack, halves })
+    }
+
+    /// Bytes.
+    pub fn memory_bytes(&self) -> usize {
+        size_of_val(&self.parallelograms[..])
+            + size_of_val(&self.triangles[..])
+            + size_of_val(&self.halves[..])
+    }
+}
+
+impl Half<'_> {
+    fn corner(&self, i: usize) -> DVec3 {
+        self.vertices[self.order[i]].as_dvec3()
+    }
+
+    /// The first corner, and the edges from there.
+    fn edges(&self) -> [DVec3; 3] {
+        let corner = self.corner(0);
+        [corner, self.corner(1) - corner, self.corner(2) - corner]
+    }
+
+    fn words(&self) -> [u32; HALF] {
+        let weight = |vertex: usize| {
+            let [_, second, third] = self.order.map(|v| f32::from(u8::from(v == vertex)));
+            (second + 2.0 * third).to_bits()
+        };
+        [self.prim.shape, self.prim.primitive, weight(1), weight(2)]
+    }
+}
+
+/// Sum of the components' sizes.
+fn length_1(v: DVec3) -> f64 {
+    v.abs().element_sum()
+}
+
+/// Whether two triangles make a parallelogram: the orders in which their vertices are p0, p1, p2 and p3, p2, p1.
+fn parallelogram(a: &[Vec3; 3], b: &[Vec3; 3]) -> Option<([usize; 3], [usize; 3])> {
+    [[0, 1, 2], [1, 2, 0], [2, 0, 1]].into_iter().find_map(|order| {
+        let [p0, p1, p2] = order.map(|i| a[i]);
+        let of_b = |p: Vec3| b.iter().position(|&q| q == p);
+        let (i1, i2) = (of_b(p1)?, of_b(p2)?);
+        // Neither has two equal vertices: they have areas.
+        let i3 = 3 - i1 - i2;
+        let [p0, p1, p2, p3] = [p0, p1, p2, b[i3]].map(|p| p.as_dvec3());
+        let (e1, e2) = (p1 - p0, p2 - p0);
+        let off = length_1(p3 - (p0 + e1 + e2));
+        (off <= CROOKED * (length_1(e1) + length_1(e2))).then_some((order, [i3, i2, i1]))
+    })
+}
