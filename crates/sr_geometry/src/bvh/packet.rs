@@ -143,55 +143,43 @@ fn dot<L: Lanes>(lanes: L, a: &[f32; 3], b: &[L::F; 3]) -> L::F {
     lanes.add(xy, lanes.mul(b[2], lanes.splat(a[2])))
 }
 
-/// Whether rays hit a piece.
-struct Verdict<L: Lanes> {
-    hit: L::Mask,
-    doubtful: L::Mask,
-}
-
-/// `nearer`: where the piece matters.
-#[inline(always)]
-fn judge<L: Lanes>(
-    lanes: L,
-    packet: &Packet<L>,
-    piece: &Piece,
-    seen: &Seen<L>,
-    nearer: L::Mask,
-) -> Verdict<L> {
-    let slack = lanes.mul(packet.size, lanes.splat(piece.slack));
-    let zero = lanes.splat(0.0);
-    let sure = lanes.and(lanes.lt(slack, seen.least), lanes.lt(packet.near, seen.t));
-    let possible = lanes.and(lanes.lt(zero, lanes.add(seen.least, slack)), lanes.lt(zero, seen.t));
-    let hit = lanes.and(nearer, sure);
-    Verdict { hit, doubtful: lanes.and_not(lanes.and(nearer, possible), sure) }
-}
-
 /// The closest hits so far.
 struct Closest<L: Lanes> {
     t: L::F,
     u: L::F,
     v: L::F,
     denominator: L::F,
-    /// [`Piece::halves`]
+    /// [`Piece::halves`], or -1: none.
     halves: L::F,
-    hit: L::Mask,
-    doubtful: L::Mask,
+    /// 1 where a piece that was closer at its time may have been hit, else 0. A number, because masks cannot be kept
+    /// in registers of their kind.
+    doubtful: L::F,
 }
 
 impl<L: Lanes> Closest<L> {
     #[inline(always)]
     fn meet<const PARALLELOGRAM: bool>(&mut self, lanes: L, packet: &Packet<L>, piece: &Piece) {
         let seen = see::<_, PARALLELOGRAM>(lanes, packet, piece);
-        // Fractions are compared without a division.
-        let nearer = lanes.lt(lanes.mul(seen.t, self.denominator), lanes.mul(self.t, seen.denominator));
-        let Verdict { hit, doubtful } = judge(lanes, packet, piece, &seen, nearer);
+        // Fractions are compared without a division. Whether the hit is surely ahead is asked of the last one only.
+        let closer = lanes.lt(lanes.mul(seen.t, self.denominator), lanes.mul(self.t, seen.denominator));
+        let matters = lanes.and(closer, lanes.lt(lanes.splat(0.0), seen.t));
+        let slack = lanes.mul(packet.size, lanes.splat(piece.slack));
+        let hit = lanes.and(matters, lanes.lt(slack, seen.least));
+        let doubtful = lanes.and(matters, lanes.le(lanes.abs(seen.least), slack));
         self.t = lanes.select(hit, seen.t, self.t);
         self.u = lanes.select(hit, seen.u, self.u);
         self.v = lanes.select(hit, seen.v, self.v);
         self.denominator = lanes.select(hit, seen.denominator, self.denominator);
         self.halves = lanes.select(hit, lanes.splat(piece.halves), self.halves);
-        self.hit = lanes.or(self.hit, hit);
-        self.doubtful = lanes.or(self.doubtful, doubtful);
+        self.doubtful = lanes.select(doubtful, lanes.splat(1.0), self.doubtful);
+    }
+
+    /// The bits of the lanes whose hits are not certain.
+    #[inline(always)]
+    fn uncertain(&self, lanes: L, packet: &Packet<L>) -> u32 {
+        let zero = lanes.splat(0.0);
+        let near = lanes.and(lanes.le(zero, self.halves), lanes.le(self.t, packet.near));
+        lanes.bits(lanes.or(near, lanes.lt(zero, self.doubtful))) | !lanes.bits(packet.ordinary)
     }
 
     /// Writes the hits from `first` on.
@@ -199,9 +187,10 @@ impl<L: Lanes> Closest<L> {
     fn write(&self, lanes: L, halves: &[u32], first: usize, hits: &mut Hits) {
         let (zero, one) = (lanes.splat(0.0), lanes.splat(1.0));
         let scale = lanes.div(one, self.denominator);
-        let t = lanes.select(self.hit, lanes.mul(self.t, scale), lanes.splat(f32::INFINITY));
+        let hit = lanes.le(zero, self.halves);
+        let t = lanes.select(hit, lanes.mul(self.t, scale), lanes.splat(f32::INFINITY));
         lanes.store_at(t, &mut hits.t, first);
-        if lanes.bits(self.hit) == 0 {
+        if lanes.bits(hit) == 0 {
             return;
         }
         let (u, v) = (lanes.mul(self.u, scale), lanes.mul(self.v, scale));
@@ -242,15 +231,14 @@ pub(super) fn closest<L: Lanes>(
     hits: &mut Hits,
 ) -> u32 {
     let packet = Packet::new(lanes, rays, (first, count), (pieces, bounds));
-    let (zero, none) = (lanes.splat(0.0), lanes.mask(0));
+    let zero = lanes.splat(0.0);
     let mut closest = Closest {
         t: packet.t_max,
         u: zero,
         v: zero,
         denominator: lanes.splat(1.0),
-        halves: zero,
-        hit: none,
-        doubtful: none,
+        halves: lanes.splat(-1.0),
+        doubtful: zero,
     };
     for piece in &pieces.parallelograms {
         closest.meet::<true>(lanes, &packet, piece);
@@ -259,7 +247,7 @@ pub(super) fn closest<L: Lanes>(
         closest.meet::<false>(lanes, &packet, piece);
     }
     closest.write(lanes, &pieces.halves, first, hits);
-    (lanes.bits(closest.doubtful) | !lanes.bits(packet.ordinary)) & first_lanes((count - first).min(L::COUNT))
+    closest.uncertain(lanes, &packet) & first_lanes((count - first).min(L::COUNT))
 }
 
 /// The bits of the lanes of rays that surely hit something, and of those that may.
@@ -272,34 +260,37 @@ pub(super) fn any<L: Lanes>(
 ) -> (u32, u32) {
     let packet = Packet::new(lanes, rays, (first, count), (pieces, bounds));
     let present = first_lanes((count - first).min(L::COUNT));
-    let mut found = Any { hit: lanes.mask(0), doubtful: lanes.mask(0) };
+    let mut found = Any { hit: lanes.splat(0.0), doubtful: lanes.splat(0.0) };
     for piece in &pieces.parallelograms {
         found.meet::<true>(lanes, &packet, piece);
-        if lanes.bits(found.hit) == present {
-            break;
-        }
     }
     for piece in &pieces.triangles {
         found.meet::<false>(lanes, &packet, piece);
     }
+    let bits = |x: L::F| lanes.bits(lanes.lt(lanes.splat(0.0), x));
     let ordinary = lanes.bits(packet.ordinary);
-    let hit = lanes.bits(found.hit) & ordinary;
-    (hit, (lanes.bits(found.doubtful) | !ordinary) & !hit & present)
+    let hit = bits(found.hit) & ordinary;
+    (hit, (bits(found.doubtful) | !ordinary) & !hit & present)
 }
 
-/// Whether rays hit anything, so far.
+/// Whether rays hit anything, so far: 1 where they do.
 struct Any<L: Lanes> {
-    hit: L::Mask,
-    doubtful: L::Mask,
+    hit: L::F,
+    /// 1 where they may, or do.
+    doubtful: L::F,
 }
 
 impl<L: Lanes> Any<L> {
     #[inline(always)]
     fn meet<const PARALLELOGRAM: bool>(&mut self, lanes: L, packet: &Packet<L>, piece: &Piece) {
         let seen = see::<_, PARALLELOGRAM>(lanes, packet, piece);
-        let nearer = lanes.lt(seen.t, lanes.mul(packet.t_max, seen.denominator));
-        let Verdict { hit, doubtful } = judge(lanes, packet, piece, &seen, nearer);
-        self.hit = lanes.or(self.hit, hit);
-        self.doubtful = lanes.or(self.doubtful, doubtful);
+        let (zero, one) = (lanes.splat(0.0), lanes.splat(1.0));
+        let slack = lanes.mul(packet.size, lanes.splat(piece.slack));
+        let within = lanes.lt(seen.t, lanes.mul(packet.t_max, seen.denominator));
+        let hit = lanes.and(lanes.and(within, lanes.lt(packet.near, seen.t)), lanes.lt(slack, seen.least));
+        let ahead = lanes.and(within, lanes.lt(zero, seen.t));
+        let doubtful = lanes.and(ahead, lanes.lt(zero, lanes.add(seen.least, slack)));
+        self.hit = lanes.select(hit, one, self.hit);
+        self.doubtful = lanes.select(doubtful, one, self.doubtful);
     }
 }

@@ -137,10 +137,6 @@ impl Lanes for Avx2 {
         avx2!(_mm256_or_ps(a, b))
     }
     #[inline(always)]
-    fn and_not(self, a: Self::Mask, b: Self::Mask) -> Self::Mask {
-        avx2!(_mm256_andnot_ps(b, a))
-    }
-    #[inline(always)]
     fn bits(self, mask: Self::Mask) -> u32 {
         avx2!(_mm256_movemask_ps(mask) as u32)
     }

@@ -113,7 +113,12 @@ impl Lanes for Avx512 {
     }
     #[inline(always)]
     fn flip(self, x: Self::F, sign: Self::F) -> Self::F {
-        avx512!(_mm512_xor_ps(x, _mm512_and_ps(sign, _mm512_set1_ps(-0.0))))
+        avx512!({
+            let (x, sign, bit) =
+                (_mm512_castps_si512(x), _mm512_castps_si512(sign), _mm512_set1_epi32(i32::MIN));
+            // x ^ (sign & bit)
+            _mm512_castsi512_ps(_mm512_ternarylogic_epi32::<0b0111_1000>(x, sign, bit))
+        })
     }
     #[inline(always)]
     fn le(self, a: Self::F, b: Self::F) -> Self::Mask {
@@ -130,10 +135,6 @@ impl Lanes for Avx512 {
     #[inline(always)]
     fn or(self, a: Self::Mask, b: Self::Mask) -> Self::Mask {
         a | b
-    }
-    #[inline(always)]
-    fn and_not(self, a: Self::Mask, b: Self::Mask) -> Self::Mask {
-        a & !b
     }
     #[inline(always)]
     fn bits(self, mask: Self::Mask) -> u32 {

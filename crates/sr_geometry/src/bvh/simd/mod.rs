@@ -60,8 +60,6 @@ pub(super) trait Lanes: Copy {
     fn lt(self, a: Self::F, b: Self::F) -> Self::Mask;
     fn and(self, a: Self::Mask, b: Self::Mask) -> Self::Mask;
     fn or(self, a: Self::Mask, b: Self::Mask) -> Self::Mask;
-    /// a, but not b.
-    fn and_not(self, a: Self::Mask, b: Self::Mask) -> Self::Mask;
     /// Bit i: is lane i set?
     fn bits(self, mask: Self::Mask) -> u32;
     /// The lanes whose bits are set.

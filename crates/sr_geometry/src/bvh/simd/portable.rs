@@ -103,10 +103,6 @@ impl Lanes for Portable {
         each(|i| a[i] | b[i])
     }
     #[inline(always)]
-    fn and_not(self, a: Self::Mask, b: Self::Mask) -> Self::Mask {
-        each(|i| a[i] & !b[i])
-    }
-    #[inline(always)]
     fn bits(self, mask: Self::Mask) -> u32 {
         (0..WIDTH).fold(0, |bits, i| bits | u32::from(mask[i]) << i)
     }
