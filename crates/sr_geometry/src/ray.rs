@@ -50,3 +50,11 @@ pub struct Hit {
     /// The instance through which it was hit, or [`NO_INSTANCE`].
     pub instance: u32,
 }
+
+impl Hit {
+    /// Stands for the closest hit before there is any: nothing, at `t`.
+    #[inline(always)]
+    pub(crate) fn none_before(t: f32) -> Self {
+        Self { t, b1: 0.0, b2: 0.0, shape: ShapeId(0), primitive: 0, instance: NO_INSTANCE }
+    }
+}

@@ -1,15 +1,17 @@
 //! Meeting a tree with many rays: the instruction set is chosen once for all of them.
 //!
-//! Trees of few triangles are met by packets, and by [`scan`] where a packet is in doubt; others ray by ray.
+//! Trees of few triangles are met by packets, and by [`scan`] where a packet is in doubt; others ray by ray, or,
+//! where they are large, by several rays in turn.
 
 use super::dispatch::meet;
+use super::interleave::walk_many;
 use super::packet;
 use super::scan::scan;
 #[cfg(target_arch = "x86_64")]
 use super::simd::{Avx2, Avx512};
 use super::simd::{Kernel, Lanes, Simd};
 use super::{Bvh, Form, Pieces, Tree, TriangleBlock, WIDE};
-use crate::{BATCH, Bounds3, Hit, Hits, NO_INSTANCE, Ray, Rays, ShapeId};
+use crate::{BATCH, Bounds3, Hit, Hits, Ray, Rays};
 
 impl Bvh {
     /// The closest hits of the first `count` rays. `meet_other` is as for [`Bvh::intersect`].
@@ -96,17 +98,30 @@ impl<F: Fn(u32, &Ray) -> Option<Hit>> Batch<'_, F> {
         })
     }
 
+    /// Meets the tree ray by ray, or in a large tree with several rays in turn; `answer(i, hit)` gets what ray i hits.
     #[inline(always)]
-    fn meet<S: Simd, L: Lanes, const ANY: bool>(&self, eight: S, few: L, i: usize) -> Option<Hit> {
-        let ray = self.rays.get(i);
-        let mut hit = no_hit_before(ray.t_max);
-        meet::<_, _, ANY>(eight, few, (self.bvh, self.tree), &ray, &self.meet_other, &mut hit).then_some(hit)
+    fn meet<S: Simd, L: Lanes, const ANY: bool>(
+        &self,
+        eight: S,
+        few: L,
+        mut answer: impl FnMut(usize, Option<&Hit>),
+    ) {
+        let Self { bvh, tree, rays, count, ref meet_other } = *self;
+        match tree.form {
+            Form::Nodes(root) if bvh.prefetches => {
+                let root = (root, &tree.bounds);
+                walk_many::<_, ANY>(eight, bvh, root, (rays, count), meet_other, answer);
+            }
+            _ => {
+                for i in 0..count {
+                    let ray = rays.get(i);
+                    let mut hit = Hit::none_before(ray.t_max);
+                    let any = meet::<_, _, ANY>(eight, few, (bvh, tree), &ray, meet_other, &mut hit);
+                    answer(i, any.then_some(&hit));
+                }
+            }
+        }
     }
-}
-
-#[inline(always)]
-fn no_hit_before(t: f32) -> Hit {
-    Hit { t, b1: 0.0, b2: 0.0, shape: ShapeId(0), primitive: 0, instance: NO_INSTANCE }
 }
 
 /// Takes the lowest of some bits.
@@ -128,16 +143,13 @@ impl<F: Fn(u32, &Ray) -> Option<Hit>> Work for Closest<'_, F> {
     fn run<S: Simd, L: Lanes>(self, eight: S, lanes: L) {
         let Self { batch, hits } = self;
         let Some(few) = batch.few() else {
-            for i in 0..batch.count {
-                hits.set(i, batch.meet::<_, _, false>(eight, lanes, i).as_ref());
-            }
-            return;
+            return batch.meet::<_, _, false>(eight, lanes, |i, hit| hits.set(i, hit));
         };
         for first in (0..batch.count).step_by(L::COUNT) {
             let mut doubtful = packet::closest(lanes, few.pieces, batch.rays, (first, batch.count), hits);
             while let Some(lane) = take_lowest(&mut doubtful) {
                 let ray = batch.rays.get(first + lane);
-                let mut hit = no_hit_before(ray.t_max);
+                let mut hit = Hit::none_before(ray.t_max);
                 let found = scan::<_, false>(lanes, few.triangles, &ray, &mut hit);
                 hits.set(first + lane, found.then_some(&hit));
             }
@@ -155,16 +167,13 @@ impl<F: Fn(u32, &Ray) -> Option<Hit>> Work for Any<'_, F> {
     fn run<S: Simd, L: Lanes>(self, eight: S, lanes: L) {
         let Self { batch, occluded } = self;
         let Some(few) = batch.few() else {
-            for (i, occluded) in occluded[..batch.count].iter_mut().enumerate() {
-                *occluded = batch.meet::<_, _, true>(eight, lanes, i).is_some();
-            }
-            return;
+            return batch.meet::<_, _, true>(eight, lanes, |i, hit| occluded[i] = hit.is_some());
         };
         for first in (0..batch.count).step_by(L::COUNT) {
             let (mut hit, mut doubtful) = packet::any(lanes, few.pieces, batch.rays, (first, batch.count));
             while let Some(lane) = take_lowest(&mut doubtful) {
                 let ray = batch.rays.get(first + lane);
-                let mut unused = no_hit_before(ray.t_max);
+                let mut unused = Hit::none_before(ray.t_max);
                 hit |= u32::from(scan::<_, true>(lanes, few.triangles, &ray, &mut unused)) << lane;
             }
             for (lane, occluded) in occluded[first..][..L::COUNT].iter_mut().enumerate() {

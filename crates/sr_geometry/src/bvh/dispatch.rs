@@ -8,7 +8,7 @@ use super::simd::{Avx2, Avx512};
 use super::simd::{Kernel, Lanes, Simd};
 use super::traverse::walk;
 use super::{Bvh, Form, Tree, WIDE};
-use crate::{Hit, NO_INSTANCE, Ray, ShapeId};
+use crate::{Hit, Ray};
 
 impl Bvh {
     /// The closest hit. `meet_other(i, ray)` answers for the primitives that are not triangles.
@@ -19,16 +19,14 @@ impl Bvh {
         ray: &Ray,
         meet_other: impl Fn(u32, &Ray) -> Option<Hit>,
     ) -> Option<Hit> {
-        let mut closest =
-            Hit { t: ray.t_max, b1: 0.0, b2: 0.0, shape: ShapeId(0), primitive: 0, instance: NO_INSTANCE };
+        let mut closest = Hit::none_before(ray.t_max);
         self.meet::<false>(tree, ray, meet_other, &mut closest).then_some(closest)
     }
 
     /// Is there any hit?
     #[inline]
     pub fn occluded(&self, tree: &Tree, ray: &Ray, meet_other: impl Fn(u32, &Ray) -> Option<Hit>) -> bool {
-        let mut unused =
-            Hit { t: ray.t_max, b1: 0.0, b2: 0.0, shape: ShapeId(0), primitive: 0, instance: NO_INSTANCE };
+        let mut unused = Hit::none_before(ray.t_max);
         self.meet::<true>(tree, ray, meet_other, &mut unused)
     }
 

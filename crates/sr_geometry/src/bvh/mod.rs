@@ -1,8 +1,8 @@
 //! One 8-wide bounding volume hierarchy for triangles, spheres, disks and instances.
 //!
 //! In: [`PrimRef`]s, a box and an identity each. Out: [`Bvh`], flat arrays of nodes and of blocks of up to eight
-//! triangles, and a [`Tree`] per call. `build` decides the tree, `traverse` walks it, `scan` meets the triangles of
-//! trees that are not worth a node; `dispatch` chooses the instruction set. Several trees (the world's and the
+//! triangles, and a [`Tree`] per call. `build` decides the tree, `traverse` walks it, `interleave` does so with several
+//! rays in turn, `scan` meets the triangles of trees that are not worth a node; `dispatch` chooses the instruction set. Several trees (the world's and the
 //! groups') share the arrays.
 //!
 //! Invariant: every tree is at most [`MAX_DEPTH`] nodes deep, so the traversal stack cannot overflow.
@@ -10,7 +10,9 @@
 mod batch;
 mod build;
 mod dispatch;
+mod interleave;
 mod packet;
+mod pages;
 mod pieces;
 mod scan;
 mod sheared;
@@ -249,10 +251,12 @@ impl Bvh {
         let (first_node, first_block) = (self.nodes.len(), self.blocks.len());
         let mut tree = build::build(prims);
         tree.shift(first_node, first_block);
+        pages::reserve(&mut self.nodes, tree.nodes.len());
         self.nodes.append(&mut tree.nodes);
         let prims = &*prims;
         let blocks =
             tree.leaves.par_iter().map(|leaf| TriangleBlock::new(&prims[leaf.clone()], &vertices_of));
+        pages::reserve(&mut self.blocks, tree.leaves.len());
         self.blocks.par_extend(blocks);
         self.prefetches = self.memory_bytes() > PREFETCH_FROM;
         Tree { form: Form::Nodes(tree.root), bounds }

@@ -41,6 +41,7 @@ pub(super) trait Triangles<L: Lanes> {
 }
 
 /// A ray, ready to meet triangles.
+#[derive(Clone, Copy)]
 pub(super) struct Sheared<L: Lanes> {
     /// Axes: the two that are sheared, and last the one along which the direction is longest.
     axes: [usize; 3],

@@ -14,6 +14,7 @@ use crate::{Bounds3, Ray};
 const FAR_SLACK: f32 = 1.0 + 4.0 * f32::EPSILON;
 
 /// A ray, ready to meet boxes.
+#[derive(Clone, Copy)]
 pub(super) struct Slabs<S: Simd> {
     /// Per axis: the row of [`Node::bounds`] with the nearer ends of the slabs. The farther ones are in row `^ 1`.
     near: [usize; 3],

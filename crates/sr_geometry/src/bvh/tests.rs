@@ -110,11 +110,13 @@ fn check_kernels(triangles: &[[Vec3; 3]], rays: &[Ray]) -> usize {
         rays.iter().map(|ray| (bvh.intersect(&tree, ray, none), bvh.occluded(&tree, ray, none))).collect()
     };
     let (detected, in_batches) = (hits(&bvh), meet_batches(&bvh, &tree, rays, BATCH));
-    for kernel in Kernel::available() {
-        bvh.kernel = kernel;
-        assert_eq!(detected, hits(&bvh), "{kernel:?}");
+    let settings = Kernel::available().flat_map(|kernel| [(kernel, false), (kernel, true)]);
+    for (kernel, prefetches) in settings {
+        (bvh.kernel, bvh.prefetches) = (kernel, prefetches);
+        let name = format!("{kernel:?}, prefetches: {prefetches}");
+        assert_eq!(detected, hits(&bvh), "{name}");
         for count in [BATCH, 21] {
-            assert_eq!(in_batches, meet_batches(&bvh, &tree, rays, count), "{kernel:?}, {count} at a time");
+            assert_eq!(in_batches, meet_batches(&bvh, &tree, rays, count), "{name}, {count} at a time");
         }
     }
     if let Form::Nodes(_) = tree.form {

@@ -15,9 +15,24 @@ use crate::{Bounds3, Hit, Ray};
 
 /// The children of a node that wait for their turn.
 #[derive(Clone, Copy)]
-struct Waiting<'a, S: Simd> {
-    keys: S::Keys,
-    children: &'a [NodeRef; WIDTH],
+pub(super) struct Waiting<'a, S: Simd> {
+    pub keys: S::Keys,
+    pub children: &'a [NodeRef; WIDTH],
+}
+
+impl<'a, S: Simd> Waiting<'a, S> {
+    /// Those that the ray meets before `t_max`.
+    #[inline(always)]
+    pub fn at(simd: S, slabs: &Slabs<S>, node: &'a Node, t_max: S::F) -> Self {
+        Self { keys: slabs.meet(simd, node, t_max), children: &node.children }
+    }
+}
+
+/// Would the ray meet every box, and no triangle?
+#[inline(always)]
+pub(super) fn meets_nothing(ray: &Ray) -> bool {
+    let sum = (Vec3A::from(ray.origin).abs() + Vec3A::from(ray.direction).abs()).element_sum();
+    !(sum < f32::INFINITY && ray.t_max > 0.0)
 }
 
 /// Walks the tree of node `root`; was anything hit? `ANY`: stops at the first hit, else writes the closest to
@@ -31,9 +46,7 @@ pub(super) fn walk<S: Simd, const ANY: bool>(
     meet_other: impl Fn(u32, &Ray) -> Option<Hit>,
     closest: &mut Hit,
 ) -> bool {
-    let sum = (Vec3A::from(ray.origin).abs() + Vec3A::from(ray.direction).abs()).element_sum();
-    if !(sum < f32::INFINITY && ray.t_max > 0.0) {
-        // It would meet every box, and no triangle.
+    if meets_nothing(ray) {
         return false;
     }
     let (sheared, slabs) = (Sheared::new(simd, ray), Slabs::new(simd, ray, bounds));
@@ -42,8 +55,7 @@ pub(super) fn walk<S: Simd, const ANY: bool>(
     let mut any = false;
     let mut stack = [const { MaybeUninit::<Waiting<'_, S>>::uninit() }; MAX_DEPTH];
     let mut depth = 0;
-    let root = bvh.node(root);
-    let mut now = Waiting { keys: slabs.meet(simd, root, t_max), children: &root.children };
+    let mut now = Waiting::at(simd, &slabs, bvh.node(root), t_max);
     loop {
         let key = simd.take_least(&mut now.keys);
         // Distances are not negative, so their bits are in the order of their values.
@@ -56,46 +68,55 @@ pub(super) fn walk<S: Simd, const ANY: bool>(
             now = unsafe { stack.get_unchecked(depth).assume_init() };
             continue;
         }
-        if bvh.prefetches {
-            bvh.prefetch(simd, now.children[(simd.least_key(now.keys) & LANE) as usize]);
-        }
         let child = now.children[(key & LANE) as usize];
         if child.is_node() {
             debug_assert!(depth < MAX_DEPTH);
             // SAFETY: the builder makes no tree that is deeper than the stack.
             unsafe { stack.get_unchecked_mut(depth).write(now) };
             depth += 1;
-            let node = bvh.node(child);
-            now = Waiting { keys: slabs.meet(simd, node, t_max), children: &node.children };
-        } else if child.is_block() {
-            let block = bvh.block(child);
-            let seen = sheared.project(simd, block);
-            if simd.bits(seen.inside) == 0 {
-                continue;
+            now = Waiting::at(simd, &slabs, bvh.node(child), t_max);
+            if bvh.prefetches {
+                bvh.prefetch_all(simd, &now);
             }
-            let meets = sheared.meet(simd, (ray, block), &seen, t_max);
-            let hit = simd.bits(meets.hit);
-            if hit != 0 {
-                if ANY {
-                    return true;
-                }
-                write_closest(simd, block, hit, &meets, closest);
-                t_max = simd.splat(closest.t);
-                t_max_bits = closest.t.to_bits();
-                any = true;
-            }
-        } else if let Some(hit) =
-            meet_other(child.index() as u32, &Ray { t_max: f32::from_bits(t_max_bits), ..*ray })
-        {
+            continue;
+        }
+        let hit = if child.is_block() {
+            meet_block::<_, ANY>(simd, &sheared, (ray, bvh.block(child)), t_max, closest)
+        } else {
+            let hit = meet_other(child.index() as u32, &Ray { t_max: f32::from_bits(t_max_bits), ..*ray });
+            *closest = hit.unwrap_or(*closest);
+            hit.is_some()
+        };
+        if hit {
             if ANY {
                 return true;
             }
-            *closest = hit;
-            t_max = simd.splat(hit.t);
-            t_max_bits = hit.t.to_bits();
+            t_max = simd.splat(closest.t);
+            t_max_bits = closest.t.to_bits();
             any = true;
         }
     }
+}
+
+/// Does the ray meet any triangle of a block before `t_max`? Unless `ANY`, `closest` becomes the closest such hit.
+#[inline(always)]
+pub(super) fn meet_block<S: Simd, const ANY: bool>(
+    simd: S,
+    sheared: &Sheared<S>,
+    (ray, block): (&Ray, &TriangleBlock<WIDTH>),
+    t_max: S::F,
+    closest: &mut Hit,
+) -> bool {
+    let seen = sheared.project(simd, block);
+    if simd.bits(seen.inside) == 0 {
+        return false;
+    }
+    let meets = sheared.meet(simd, (ray, block), &seen, t_max);
+    let hit = simd.bits(meets.hit);
+    if !ANY && hit != 0 {
+        write_closest(simd, block, hit, &meets, closest);
+    }
+    hit != 0
 }
 
 /// Writes the closest of a block's hits, those in `mask`, to `closest`.
@@ -136,7 +157,7 @@ impl<S: Simd> Triangles<S> for TriangleBlock<WIDTH> {
 impl Bvh {
     /// The node of a reference to a node.
     #[inline(always)]
-    fn node(&self, child: NodeRef) -> &Node {
+    pub(super) fn node(&self, child: NodeRef) -> &Node {
         debug_assert!(child.is_node() && child.index() < self.nodes.len());
         // SAFETY: references to nodes are made by the builder, for nodes that it appends.
         unsafe { self.nodes.get_unchecked(child.index()) }
@@ -144,17 +165,27 @@ impl Bvh {
 
     /// The block of a reference to a block.
     #[inline(always)]
-    fn block(&self, child: NodeRef) -> &TriangleBlock<WIDTH> {
+    pub(super) fn block(&self, child: NodeRef) -> &TriangleBlock<WIDTH> {
         debug_assert!(child.is_block() && child.index() < self.blocks.len());
         // SAFETY: as above.
         unsafe { self.blocks.get_unchecked(child.index()) }
     }
 
-    /// Asks for the cache lines of a child that comes next unless a hit hides it. Any reference will do.
+    /// Asks for the cache lines of a child. Any reference will do.
     #[inline(always)]
-    fn prefetch<S: Simd>(&self, simd: S, child: NodeRef) {
+    pub(super) fn prefetch<S: Simd>(&self, simd: S, child: NodeRef) {
         let node = self.nodes.as_ptr().wrapping_add(child.index()).cast::<u8>();
         let block = self.blocks.as_ptr().wrapping_add(child.index()).cast::<u8>();
         simd.prefetch::<TriangleBlock<WIDTH>>(if child.is_node() { node } else { block }.cast());
+    }
+
+    /// Asks for the cache lines of all children that are waiting.
+    #[inline(always)]
+    fn prefetch_all<S: Simd>(&self, simd: S, waiting: &Waiting<'_, S>) {
+        let mut lanes = simd.keyed(waiting.keys);
+        while lanes != 0 {
+            self.prefetch(simd, waiting.children[lanes.trailing_zeros() as usize % WIDTH]);
+            lanes &= lanes - 1;
+        }
     }
 }

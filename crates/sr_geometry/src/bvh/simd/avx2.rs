@@ -179,8 +179,9 @@ impl Simd for Avx2 {
         })
     }
     #[inline(always)]
-    fn least_key(self, keys: Self::Keys) -> u32 {
-        avx2!(_mm256_cvtsi256_si32(self.broadcast_least(keys)) as u32)
+    fn keyed(self, keys: Self::Keys) -> u32 {
+        // The sign bits.
+        avx2!(!_mm256_movemask_ps(_mm256_castsi256_ps(keys)) as u32 & 0xff)
     }
     #[inline(always)]
     fn take_least(self, keys: &mut Self::Keys) -> u32 {

@@ -77,8 +77,8 @@ pub(super) trait Simd: Lanes {
     /// What orders the lanes by `x` ≥ 0: the bits of x[i] with the lowest three replaced by i.
     /// `u32::MAX` for lanes where not x[i] ≤ `limit`[i].
     fn keys(self, x: Self::F, limit: Self::F) -> Self::Keys;
-    /// The smallest key.
-    fn least_key(self, keys: Self::Keys) -> u32;
+    /// Bit i: does lane i have a key other than `u32::MAX`? For keys of numbers that are not negative.
+    fn keyed(self, keys: Self::Keys) -> u32;
     /// Removes and returns the smallest key, leaving `u32::MAX` in its lane.
     fn take_least(self, keys: &mut Self::Keys) -> u32;
     /// Asks for the cache lines of a `T` that may be needed soon. Any address will do: nothing is read.

@@ -132,12 +132,12 @@ impl Simd for Portable {
         each(|i| if x[i] <= limit[i] { x[i].to_bits() & !LANE | i as u32 } else { u32::MAX })
     }
     #[inline(always)]
-    fn least_key(self, keys: Self::Keys) -> u32 {
-        keys.iter().fold(u32::MAX, |least, &key| least.min(key))
+    fn keyed(self, keys: Self::Keys) -> u32 {
+        keys.iter().enumerate().fold(0, |lanes, (i, &key)| lanes | u32::from(key != u32::MAX) << i)
     }
     #[inline(always)]
     fn take_least(self, keys: &mut Self::Keys) -> u32 {
-        let least = self.least_key(*keys);
+        let least = keys.iter().fold(u32::MAX, |least, &key| least.min(key));
         *keys = each(|i| if keys[i] == least { u32::MAX } else { keys[i] });
         least
     }
