@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{OwnedMesh, Random, check_against_brute_force, meet_batch, meet_both, soup};
+use common::{OwnedMesh, Random, check_against_brute_force, closed_box, meet_batch, meet_both, soup};
 use glam::{Affine3A, Mat3, Vec2, Vec3};
 use sr_geometry::{
     Geometry, GeometryError, GeometryInput, Instance, MeshError, Ray, Shape, Sphere, TriangleMesh,
@@ -26,8 +26,9 @@ fn an_empty_scene_is_never_hit() {
 #[test]
 fn rays_that_are_none_hit_nothing() {
     let bad = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
-    for count in [1, 3, 100] {
-        let geometry = soup(&mut Random(31), count, 2.0).build();
+    let soups = [1, 3, 100].map(|count| soup(&mut Random(31), count, 2.0));
+    for mesh in soups.into_iter().chain([closed_box(1)]) {
+        let geometry = mesh.build();
         let mut rays = vec![
             Ray::new(Vec3::ZERO, Vec3::ZERO),
             Ray::new(Vec3::ZERO, Vec3::new(0.0, -0.0, 0.0)),

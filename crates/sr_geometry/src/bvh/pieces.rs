@@ -1,7 +1,8 @@
 //! Few triangles, made ready for packets of rays.
 //!
 //! In: triangles. Out: [`Pieces`], a parallelogram wherever two triangles make one, and the triangles that are left.
-//! Most walls and blocks are parallelograms, which cost a ray no more than a triangle each. `packet` meets them.
+//! Most walls and blocks are parallelograms, which cost a ray no more than a triangle each, and less where they are
+//! perpendicular to an axis. `packet` meets them.
 
 use glam::{DVec3, Vec3};
 
@@ -12,13 +13,20 @@ use crate::offset::ROUNDING;
 /// How far the fourth corner of a parallelogram may be from where the others put it, in parts of the edges: rounding.
 const CROOKED: f64 = 4.0 * ROUNDING as f64;
 
+/// What a piece is: [`TRIANGLE`], [`PARALLELOGRAM`], or a parallelogram that is perpendicular to axis 0, 1, 2.
+pub(super) type Kind = usize;
+pub(super) const PARALLELOGRAM: Kind = 3;
+pub(super) const TRIANGLE: Kind = 4;
+const KINDS: usize = 5;
+
 /// Words of a half.
 pub(super) const HALF: usize = 4;
 
 /// The triangle p0, p1, p2 or the parallelogram p0, p1, p3, p2, with edges e1 = p1 − p0 and e2 = p2 − p0.
 ///
 /// Edges and normal are multiplied by the power of two that brings the normal's largest component into [1, 2), which
-/// is exact and changes no ratio: products of products neither overflow nor vanish.
+/// is exact and changes no ratio: products of products neither overflow nor vanish. Those that are perpendicular to an
+/// axis are divided by the normal's only component, which is then 1.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Piece {
     /// p0.
@@ -36,8 +44,8 @@ pub(super) struct Piece {
 /// The pieces of a tree.
 #[derive(Debug)]
 pub(super) struct Pieces {
-    pub parallelograms: Vec<Piece>,
-    pub triangles: Vec<Piece>,
+    /// By [`Kind`].
+    pub kinds: [Vec<Piece>; KINDS],
     /// Two of [`HALF`] words for each piece: the triangle with corner p0 and that with p3, or a triangle twice. Words:
     /// shape, triangle, and which weights barycentric coordinates 1 and 2 are, as bits of the numbers 0, 1, 2: the
     /// weight of p0 (p3), of p1 (p2), of p2 (p1).
@@ -65,13 +73,8 @@ impl Pieces {
     ) -> Option<Self> {
         let vertices: Vec<_> = prims.iter().map(|p| vertices_of(ShapeId(p.shape), p.primitive)).collect();
         let half = |i: usize, order: [usize; 3]| Half { prim: &prims[i], vertices: &vertices[i], order };
-        let mut pieces = Self {
-            parallelograms: Vec::new(),
-            triangles: Vec::new(),
-            halves: Vec::new(),
-            near: 0.0,
-            slack: 1.0,
-        };
+        let mut pieces =
+            Self { kinds: [const { Vec::new() }; KINDS], halves: Vec::new(), near: 0.0, slack: 1.0 };
         let mut taken = vec![false; prims.len()];
         for i in 0..prims.len() {
             if taken[i] {
@@ -80,26 +83,31 @@ impl Pieces {
             let other = (i + 1..prims.len())
                 .filter(|&j| !taken[j])
                 .find_map(|j| parallelogram(&vertices[i], &vertices[j]).map(|(of_i, of_j)| (j, of_i, of_j)));
-            if let Some((j, of_i, of_j)) = other {
+            let (first, second) = match other {
+                Some((j, of_i, of_j)) => (half(i, of_i), Some(half(j, of_j))),
+                None => (half(i, [0, 1, 2]), None),
+            };
+            if let Some((j, ..)) = other {
                 taken[j] = true;
-                let piece = pieces.piece(half(i, of_i), Some(half(j, of_j)), extent)?;
-                pieces.parallelograms.push(piece);
-            } else {
-                let piece = pieces.piece(half(i, [0, 1, 2]), None, extent)?;
-                pieces.triangles.push(piece);
             }
+            pieces.push(first, second, extent)?;
         }
         Some(pieces)
     }
 
-    /// Makes a piece, and adds its halves.
-    fn piece(&mut self, first: Half<'_>, second: Option<Half<'_>>, extent: f32) -> Option<Piece> {
+    /// Adds a piece. `None`: it does not fit.
+    fn push(&mut self, first: Half<'_>, second: Option<Half<'_>>, extent: f32) -> Option<()> {
         let [p0, e1, e2] = first.edges();
         let off = second.map_or(DVec3::ZERO, |second| second.corner(0) - (p0 + e1 + e2));
         let normal = e1.cross(e2);
-        // From the exponent: a logarithm may round differently elsewhere.
-        let exponent = (normal.abs().max_element().to_bits() >> 52) as i32 - 1023;
-        let scale = 2f64.powi(-exponent);
+        let (kind, scale) = match (0..3).find(|&axis| e1[axis] == 0.0 && e2[axis] == 0.0) {
+            Some(axis) if second.is_some() => (axis, 1.0 / normal[axis]),
+            _ => {
+                // From the exponent: a logarithm may round differently elsewhere.
+                let exponent = (normal.abs().max_element().to_bits() >> 52) as i32 - 1023;
+                (if second.is_some() { PARALLELOGRAM } else { TRIANGLE }, 2f64.powi(-exponent))
+            }
+        };
         let [e1, e2, off, normal] = [e1, e2, off, normal].map(|v| scale * v);
         let (extent, unit) = (f64::from(extent), f64::from(ROUNDING));
         let edges = 24.0 * unit * (length_1(e1) + length_1(e2));
@@ -112,13 +120,13 @@ impl Pieces {
         self.slack = self.slack.max(slack);
         let [corner, normal, back, along] = [p0, normal, -e2, e1].map(|v| v.as_vec3().to_array());
         let fits = [normal, back, along].iter().flatten().all(|x| x.is_finite()) && slack.is_finite();
-        fits.then_some(Piece { corner, normal, across: [back, along], slack, halves })
+        self.kinds[kind].push(Piece { corner, normal, across: [back, along], slack, halves });
+        fits.then_some(())
     }
 
     /// Bytes.
     pub fn memory_bytes(&self) -> usize {
-        size_of_val(&self.parallelograms[..])
-            + size_of_val(&self.triangles[..])
+        self.kinds.iter().map(|pieces| size_of_val(&pieces[..])).sum::<usize>()
             + size_of_val(&self.halves[..])
     }
 }
