@@ -36,6 +36,8 @@
 
 mod any;
 mod closest;
+#[cfg(test)]
+mod tests;
 
 use super::pieces::{Kind, PARALLELOGRAM, Piece, Pieces, TRIANGLE};
 use super::simd::Lanes;
