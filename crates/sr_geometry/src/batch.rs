@@ -154,7 +154,7 @@ impl Hits {
     }
 }
 
-/// Points on surfaces: the fields of [`Surface`].
+/// Points on surfaces: the fields of [`Surface`] but for the texture coordinates, which few surfaces need.
 #[derive(Clone, Debug)]
 pub struct Surfaces {
     /// The points.
@@ -165,8 +165,6 @@ pub struct Surfaces {
     pub ng: Vec3s,
     /// Shading normals.
     pub ns: Vec3s,
-    /// Texture coordinates.
-    pub uv: Vec2s,
 }
 
 impl Surfaces {
@@ -176,19 +174,12 @@ impl Surfaces {
         clearance: [0.0; BATCH],
         ng: Vec3s::splat(Vec3::Z),
         ns: Vec3s::splat(Vec3::Z),
-        uv: Vec2s::splat(Vec2::ZERO),
     };
 
-    /// One of them.
+    /// One of them, with the texture coordinates that [`Geometry::uv`] knows.
     #[inline(always)]
-    pub fn get(&self, i: usize) -> Surface {
-        Surface {
-            p: self.p.get(i),
-            clearance: self.clearance[i],
-            ng: self.ng.get(i),
-            ns: self.ns.get(i),
-            uv: self.uv.get(i),
-        }
+    pub fn get(&self, i: usize, uv: Vec2) -> Surface {
+        Surface { p: self.p.get(i), clearance: self.clearance[i], ng: self.ng.get(i), ns: self.ns.get(i), uv }
     }
 
     /// Replaces one of them.
@@ -198,7 +189,6 @@ impl Surfaces {
         self.clearance[i] = surface.clearance;
         self.ng.set(i, surface.ng);
         self.ns.set(i, surface.ns);
-        self.uv.set(i, surface.uv);
     }
 }
 

@@ -265,6 +265,18 @@ impl Geometry {
         }
     }
 
+    /// A triangle's corners; `None` if the hit is no triangle in world space.
+    #[inline(always)]
+    pub(crate) fn world_corners(&self, hit: &Hit) -> Option<Corners<'_>> {
+        match &self.shapes[hit.shape.0 as usize] {
+            ShapeRecord::Mesh(mesh) if hit.instance == NO_INSTANCE => {
+                let indices = self.triangles[(mesh.first_triangle + hit.primitive) as usize];
+                Some(Corners { geometry: self, mesh, indices })
+            }
+            _ => None,
+        }
+    }
+
     /// The instance with this index; `None` for [`NO_INSTANCE`].
     #[inline]
     pub(crate) fn placed(&self, instance: u32) -> Option<&PlacedGroup> {
@@ -298,6 +310,12 @@ impl Corners<'_> {
     #[inline(always)]
     pub fn positions(&self) -> [Vec3; 3] {
         self.indices.map(|i| self.geometry.positions[(self.mesh.first_vertex + i) as usize])
+    }
+
+    /// Is the triangle shaded as flat as it is?
+    #[inline(always)]
+    pub fn are_flat(&self) -> bool {
+        self.mesh.first_normal.is_none()
     }
 
     /// Normals, if the mesh has any.

@@ -2,8 +2,9 @@
 
 use glam::{Vec2, Vec3};
 
+use crate::geometry::Corners;
 use crate::offset::{ROUNDING, clearance};
-use crate::{Geometry, Hit, NO_INSTANCE, Ray, ShapeId, ShapeRef};
+use crate::{BATCH, Geometry, Hit, Hits, NO_INSTANCE, Ray, Rays, ShapeId, ShapeRef, Surfaces, Vec3s};
 
 /// A point on a surface, in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,10 +67,41 @@ pub(crate) struct Located {
 }
 
 impl Located {
+    /// At barycentric coordinates of a triangle, which are its texture coordinates.
+    #[inline(always)]
+    fn on_flat_triangle([p0, p1, p2]: [Vec3; 3], b1: f32, b2: f32) -> Self {
+        let (e1, e2) = (p1 - p0, p2 - p0);
+        let (m1, m2) = (b1 * e1, b2 * e2);
+        let p = p0 + (m1 + m2);
+        // Rounding here, and that of the next ray's test of a triangle of this size.
+        let size = e1.abs().max(e2.abs()).max_element();
+        let p_error = ROUNDING * (2.0 * p.abs() + 4.0 * (m1.abs() + m2.abs()) + 4.0 * size);
+        let ng = e1.cross(e2).normalize_or_zero();
+        Self { p, p_error, ng, ns: ng, uv: Vec2::new(b1, b2) }
+    }
+
     #[inline(always)]
     pub fn surface(self) -> Surface {
         let Self { p, p_error, ng, ns, uv } = self;
         Surface { p, clearance: clearance(p, p_error, ng), ng, ns, uv }
+    }
+}
+
+impl Corners<'_> {
+    /// The interpolated normal, if there are normals and they do not cancel.
+    #[inline(always)]
+    fn shading_normal(&self, b1: f32, b2: f32) -> Option<Vec3> {
+        let [n0, n1, n2] = self.normals()?;
+        ((1.0 - b1 - b2) * n0 + b1 * n1 + b2 * n2).try_normalize()
+    }
+
+    /// Texture coordinates; barycentric ones if there are none.
+    #[inline(always)]
+    fn uv(&self, b1: f32, b2: f32) -> Vec2 {
+        match self.uvs() {
+            Some([uv0, uv1, uv2]) => (1.0 - b1 - b2) * uv0 + b1 * uv1 + b2 * uv2,
+            None => Vec2::new(b1, b2),
+        }
     }
 }
 
@@ -108,20 +140,55 @@ impl Geometry {
     #[inline(always)]
     fn located_on_triangle(&self, shape: ShapeId, triangle: u32, b1: f32, b2: f32) -> Located {
         let corners = self.corners(shape, triangle);
-        let [p0, p1, p2] = corners.positions();
-        let (e1, e2) = (p1 - p0, p2 - p0);
-        let (m1, m2) = (b1 * e1, b2 * e2);
-        let p = p0 + (m1 + m2);
-        // Rounding here, and that of the next ray's test of a triangle of this size.
-        let size = e1.abs().max(e2.abs()).max_element();
-        let p_error = ROUNDING * (2.0 * p.abs() + 4.0 * (m1.abs() + m2.abs()) + 4.0 * size);
-        let ng = e1.cross(e2).normalize_or_zero();
-        let b0 = 1.0 - b1 - b2;
-        let ns = corners
-            .normals()
-            .map_or(ng, |[n0, n1, n2]| (b0 * n0 + b1 * n1 + b2 * n2).try_normalize().unwrap_or(ng));
-        let uv = corners.uvs().map_or(Vec2::new(b1, b2), |[uv0, uv1, uv2]| b0 * uv0 + b1 * uv1 + b2 * uv2);
-        Located { p, p_error, ng, ns, uv }
+        let flat = Located::on_flat_triangle(corners.positions(), b1, b2);
+        Located { ns: corners.shading_normal(b1, b2).unwrap_or(flat.ng), uv: corners.uv(b1, b2), ..flat }
+    }
+
+    /// Texture coordinates of a hit of `ray`.
+    #[inline]
+    pub fn uv(&self, ray: &Ray, hit: &Hit) -> Vec2 {
+        match self.shape_of(hit.shape) {
+            ShapeRef::Mesh => self.corners(hit.shape, hit.primitive).uv(hit.b1, hit.b2),
+            _ => self.surface_of_other(ray, hit).uv,
+        }
+    }
+
+    /// The surfaces at the hits of the first `count` rays. What stands where a ray hits nothing means nothing.
+    #[inline(always)]
+    pub fn surfaces(&self, rays: &Rays, hits: &Hits, count: usize, surfaces: &mut Surfaces) {
+        let count = count.min(BATCH);
+        let mut positions = [const { Vec3s::splat(Vec3::ZERO) }; 3];
+        // Those that are more than a flat triangle.
+        let (mut others, mut other_count) = ([0_u32; BATCH], 0);
+        for i in 0..count {
+            let Some(hit) = hits.get(i) else { continue };
+            let mut is_flat = false;
+            if let Some(corners) = self.world_corners(&hit) {
+                let [p0, p1, p2] = corners.positions();
+                positions[0].set(i, p0);
+                positions[1].set(i, p1);
+                positions[2].set(i, p2);
+                is_flat = corners.are_flat();
+            }
+            others[other_count] = i as u32;
+            other_count += usize::from(!is_flat);
+        }
+        for i in 0..count {
+            let positions = [positions[0].get(i), positions[1].get(i), positions[2].get(i)];
+            surfaces.set(i, &Located::on_flat_triangle(positions, hits.b1[i], hits.b2[i]).surface());
+        }
+        for &i in &others[..other_count] {
+            let i = i as usize;
+            let Some(hit) = hits.get(i) else { continue };
+            match self.world_corners(&hit) {
+                Some(corners) => {
+                    if let Some(ns) = corners.shading_normal(hit.b1, hit.b2) {
+                        surfaces.ns.set(i, ns);
+                    }
+                }
+                None => surfaces.set(i, &self.surface_of_other(&rays.get(i), &hit)),
+            }
+        }
     }
 
     /// Derivatives of position by texture coordinates at a surface and its hit. Not orthogonal, and of any length;

@@ -1,6 +1,6 @@
 //! The camera: film position and lens position to a ray.
 
-use glam::{Mat4, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 use sr_geometry::Ray;
 use sr_sampling::warp::concentric_disk;
 use sr_scene::CameraDesc;
@@ -8,7 +8,9 @@ use sr_scene::CameraDesc;
 /// A compiled pinhole or thin-lens camera for one film size.
 #[derive(Clone, Debug)]
 pub struct Camera {
-    world_from_camera: Mat4,
+    /// Where the camera's axes and its origin are in the world.
+    axes: [Vec3; 3],
+    origin: Vec3,
     tan_half: Vec2,
     principal_point_offset: Vec2,
     aperture_radius: f32,
@@ -23,14 +25,9 @@ impl Camera {
         let aspect = width as f32 / height as f32;
         let tan_x = (0.5 * desc.fov_axis.horizontal(desc.fov, aspect)).tan();
         let m = desc.world_from_camera;
-        let unscaled = |column: glam::Vec4| column.truncate().normalize_or(Vec3::Z).extend(0.0);
         Self {
-            world_from_camera: Mat4::from_cols(
-                unscaled(m.x_axis),
-                unscaled(m.y_axis),
-                unscaled(m.z_axis),
-                m.w_axis,
-            ),
+            axes: [m.x_axis, m.y_axis, m.z_axis].map(|column| column.truncate().normalize_or(Vec3::Z)),
+            origin: m.w_axis.truncate(),
             tan_half: Vec2::new(tan_x, tan_x / aspect),
             principal_point_offset: desc.principal_point_offset,
             aperture_radius: desc.aperture_radius,
@@ -47,7 +44,7 @@ impl Camera {
 
     /// The ray through a film position (fractions of width and height, from the top left) and a lens
     /// position chosen by two uniforms. The direction is a unit vector.
-    #[inline]
+    #[inline(always)]
     pub fn ray(&self, film: Vec2, u_lens: Vec2) -> Ray {
         let at = Vec2::ONE - 2.0 * (film + self.principal_point_offset);
         let through = (at * self.tan_half).extend(1.0);
@@ -60,16 +57,25 @@ impl Camera {
         let d = towards.normalize();
         let per_z = 1.0 / d.z;
         Ray {
-            origin: self.world_from_camera.transform_point3(lens + d * (self.near_clip * per_z)),
-            direction: self.world_from_camera.transform_vector3(d),
+            origin: self.origin + self.to_world(lens + d * (self.near_clip * per_z)),
+            direction: self.to_world(d),
             t_max: (self.far_clip - self.near_clip) * per_z,
         }
+    }
+}
+
+impl Camera {
+    #[inline(always)]
+    fn to_world(&self, v: Vec3) -> Vec3 {
+        let [x, y, z] = self.axes;
+        x * v.x + y * v.y + z * v.z
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::Mat4;
     use sr_scene::{FilmDesc, FilterDesc, FovAxis, Span};
 
     fn desc(aperture_radius: f32) -> CameraDesc {

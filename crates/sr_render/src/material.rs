@@ -283,6 +283,25 @@ impl<'a> BsdfUser<'a> for Keep {
 }
 
 impl Material {
+    /// The reflectance of a plain Lambertian surface, and whether its normal is turned to the viewer, who is behind
+    /// it or not; `None` for any other side, and for one with holes or bumps.
+    #[inline]
+    pub(crate) fn lambert(&self, from_behind: bool) -> Option<(ColorInput, bool)> {
+        if self.front.bump.is_some() {
+            return None;
+        }
+        let (side, turned) = match &self.back {
+            Some(back) if from_behind => (back, true),
+            _ => (&self.front, false),
+        };
+        match side {
+            Side { opacity: None, bump: None, model: Model::Diffuse(reflectance) } => {
+                Some((*reflectance, turned))
+            }
+            _ => None,
+        }
+    }
+
     fn with_sides(self, change: impl Fn(Side) -> Result<Side, MaterialError>) -> Result<Self, MaterialError> {
         Ok(Self { front: change(self.front)?, back: self.back.map(&change).transpose()? })
     }

@@ -9,13 +9,15 @@ use std::time::{Duration, Instant};
 
 use glam::Vec2;
 use rayon::prelude::*;
-use sr_sampling::{Cursor, Independent, OwenSobol, SampleId, Sequence, SequenceKind};
+use sr_geometry::{BATCH, Rays, Vec2s};
+use sr_sampling::{Independent, OwenSobol, Sequence, SequenceKind};
 use sr_scene::Settings;
 
 use crate::camera::Camera;
 use crate::film::{AUX, Film, FilmError, PixelSums, REPLICATES, SUMS, next_block};
 use crate::filter::PixelFilter;
-use crate::integrator::{Integrator, PathLimits, PathSample, PathTracer, StrategyTracer};
+use crate::integrator::{CameraRays, Integrator, PathLimits, PathSample, PathTracer, StrategyTracer};
+use crate::isa::{Isa, Work};
 use crate::scene::Scene;
 use crate::strategy::Strategy;
 
@@ -206,8 +208,7 @@ struct Sampler<'a, I, Q> {
     height: u32,
     /// One independent sequence per replicate.
     sequences: [Q; REPLICATES],
-    #[cfg(target_arch = "x86_64")]
-    has_avx2_and_fma: bool,
+    isa: Isa,
 }
 
 impl<'a, I: Integrator, Q: Sequence> Sampler<'a, I, Q> {
@@ -221,93 +222,59 @@ impl<'a, I: Integrator, Q: Sequence> Sampler<'a, I, Q> {
             width: settings.width,
             height: settings.height,
             sequences: std::array::from_fn(|r| sequence.replicate(r as u32)),
-            #[cfg(target_arch = "x86_64")]
-            has_avx2_and_fma: is_x86_feature_detected!("avx2")
-                && is_x86_feature_detected!("fma")
-                && is_x86_feature_detected!("bmi1")
-                && is_x86_feature_detected!("bmi2")
-                && is_x86_feature_detected!("lzcnt"),
+            isa: Isa::detect(),
         }
     }
 
     /// Samples `first .. first + len` of every pixel. Returns how many were not finite; `None` if cancelled.
     fn pass(&self, first: u32, len: u32, sums: &mut [PixelSums], cancel: &AtomicBool) -> Option<u64> {
         let rejected = AtomicU64::new(0);
-        sums.par_chunks_mut(PIXELS_PER_TASK).enumerate().for_each(|(task, pixels)| {
-            let mut bad = 0;
-            let mut tree = PairwiseSum::new();
-            for (i, pixel_sums) in pixels.iter_mut().enumerate() {
-                if cancel.load(Ordering::Relaxed) {
-                    return;
-                }
-                let pixel = (task * PIXELS_PER_TASK + i) as u32;
-                let (sums, rejected_here) = self.pixel_fast(pixel, first, len, &mut tree);
-                *pixel_sums = sums;
-                bad += rejected_here;
-            }
-            rejected.fetch_add(bad, Ordering::Relaxed);
+        let pixels_per_task = PIXELS_PER_TASK.max(BATCH / len as usize);
+        sums.par_chunks_mut(pixels_per_task).enumerate().for_each(|(task, sums)| {
+            let first_pixel = (task * pixels_per_task) as u32;
+            let tile = Tile { sampler: self, first_pixel, first, len, sums, cancel };
+            rejected.fetch_add(self.isa.run(tile), Ordering::Relaxed);
         });
         (!cancel.load(Ordering::Relaxed)).then(|| rejected.into_inner())
     }
 
-    /// [`Sampler::pixel`], compiled for the instruction set of this processor. The results are the same bits.
-    fn pixel_fast(&self, pixel: u32, first: u32, len: u32, tree: &mut PairwiseSum) -> (PixelSums, u64) {
-        #[cfg(target_arch = "x86_64")]
-        if self.has_avx2_and_fma {
-            #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt")]
-            fn pixel_avx2<I: Integrator, Q: Sequence>(
-                sampler: &Sampler<'_, I, Q>,
-                pixel: u32,
-                first: u32,
-                len: u32,
-                tree: &mut PairwiseSum,
-            ) -> (PixelSums, u64) {
-                sampler.pixel(pixel, first, len, tree)
-            }
-            // SAFETY: the features were detected.
-            return unsafe { pixel_avx2(self, pixel, first, len, tree) };
-        }
-        self.pixel(pixel, first, len, tree)
-    }
-
-    /// One pixel of a pass: a pairwise sum over samples, in groups of one sample per replicate.
-    /// Returns the sums, and how many samples were not finite.
+    /// Makes the camera rays of samples `start .. start + per_pixel` of `pixels`.
     #[inline(always)]
-    fn pixel(&self, pixel: u32, first: u32, len: u32, tree: &mut PairwiseSum) -> (PixelSums, u64) {
-        let window = self.window(pixel);
-        let group = len.min(REPLICATES as u32);
-        let mut rejected = 0;
-        for start in (first..first + len).step_by(group as usize) {
-            let mut leaf = [0.0; SUMS];
-            let mut aux = [[0.0; AUX]; REPLICATES];
-            for i in 0..group {
-                let index = start + i;
-                let replicate = index as usize % REPLICATES;
-                let sample = self.sample(pixel, &window, replicate, index / REPLICATES as u32);
-                if sample.li.is_finite() {
-                    leaf[3 * replicate..3 * replicate + 3].copy_from_slice(&sample.li.to_array());
-                } else {
-                    rejected += 1;
-                }
-                if let Some(hit) = sample.first {
-                    let [a, n] = [hit.albedo, hit.normal];
-                    aux[i as usize] = [a.x, a.y, a.z, n.x, n.y, n.z, hit.depth, 1.0];
-                }
+    fn camera_rays(&self, rays: &mut CameraRays<Q>, pixels: Range<u32>, start: u32, per_pixel: u32) {
+        let mut film = Vec2s::splat(Vec2::ZERO);
+        let mut i = 0;
+        for pixel in pixels {
+            for sample in start..start + per_pixel {
+                rays.pixel[i] = pixel;
+                rays.index[i] = sample / REPLICATES as u32;
+                rays.sequence[i] = self.sequences[sample as usize % REPLICATES];
+                i += 1;
             }
-            leaf[3 * REPLICATES..].copy_from_slice(&pairwise(&mut aux[..group as usize]));
-            tree.add(leaf);
         }
-        (tree.take_total(), rejected)
-    }
-
-    #[inline(always)]
-    fn sample(&self, pixel: u32, window: &FilterWindow, replicate: usize, index: u32) -> PathSample {
-        let sequence = &self.sequences[replicate];
-        let mut u = Cursor::new(sequence, SampleId { pixel, index });
-        let at = window.place(&self.filter, u.next_2d());
-        let film = at / Vec2::new(self.width as f32, self.height as f32);
-        let u_lens = if self.camera.has_lens() { u.next_2d() } else { Vec2::ZERO };
-        self.integrator.li(self.scene, self.camera.ray(film, u_lens), &mut u)
+        rays.count = i;
+        let count = i.min(BATCH);
+        for i in 0..count {
+            film.set(i, rays.cursor(i).next_2d());
+        }
+        let mut i = 0;
+        while i < count {
+            let window = self.window(rays.pixel[i]);
+            for _ in 0..per_pixel {
+                film.set(i, window.place(&self.filter, film.get(i)));
+                i += 1;
+            }
+        }
+        let size = Vec2::new(self.width as f32, self.height as f32);
+        if self.camera.has_lens() {
+            for i in 0..count {
+                let u_lens = rays.cursor(i).at(2).next_2d();
+                rays.rays.set(i, &self.camera.ray(film.get(i) / size, u_lens));
+            }
+        } else {
+            for i in 0..count {
+                rays.rays.set(i, &self.camera.ray(film.get(i) / size, Vec2::ZERO));
+            }
+        }
     }
 
     fn window(&self, pixel: u32) -> FilterWindow {
@@ -323,6 +290,82 @@ impl<'a, I: Integrator, Q: Sequence> Sampler<'a, I, Q> {
             span: Vec2::new(x1 - x0, y1 - y0),
         }
     }
+}
+
+/// A few neighbouring pixels of a pass.
+struct Tile<'a, I, Q> {
+    sampler: &'a Sampler<'a, I, Q>,
+    first_pixel: u32,
+    first: u32,
+    len: u32,
+    sums: &'a mut [PixelSums],
+    cancel: &'a AtomicBool,
+}
+
+impl<I: Integrator, Q: Sequence> Work for Tile<'_, I, Q> {
+    /// How many samples were not finite.
+    type Out = u64;
+
+    /// A batch holds all samples of some pixels, or some of one.
+    #[inline(always)]
+    fn run(self) -> u64 {
+        let Self { sampler, first_pixel, first, len, sums, cancel } = self;
+        let per_pixel = len.min(BATCH as u32);
+        let mut rays = Box::new(CameraRays {
+            count: 0,
+            rays: Rays::NONE,
+            pixel: [0; BATCH],
+            index: [0; BATCH],
+            sequence: [sampler.sequences[0]; BATCH],
+        });
+        let mut samples = Box::new([PathSample::default(); BATCH]);
+        let mut tree = PairwiseSum::new();
+        let mut rejected = 0;
+        let pixels_per_batch = BATCH / per_pixel as usize;
+        for (chunk, sums) in sums.chunks_mut(pixels_per_batch).enumerate() {
+            let at = first_pixel + (chunk * pixels_per_batch) as u32;
+            for start in (first..first + len).step_by(per_pixel as usize) {
+                if cancel.load(Ordering::Relaxed) {
+                    return rejected;
+                }
+                sampler.camera_rays(&mut rays, at..at + sums.len() as u32, start, per_pixel);
+                sampler.integrator.trace(sampler.scene, &rays, &mut samples);
+                for (samples, sums) in samples[..rays.count].chunks(per_pixel as usize).zip(&mut *sums) {
+                    rejected += add_samples(samples, start, &mut tree);
+                    if start + per_pixel == first + len {
+                        *sums = tree.take_total();
+                    }
+                }
+            }
+        }
+        rejected
+    }
+}
+
+/// Adds samples of one pixel, from sample `start` on, to a sum: groups of one sample for each replicate.
+/// Returns how many were not finite.
+#[inline(always)]
+fn add_samples(samples: &[PathSample], start: u32, tree: &mut PairwiseSum) -> u64 {
+    let mut rejected = 0;
+    for (group, samples) in samples.chunks(REPLICATES).enumerate() {
+        let mut leaf = [0.0; SUMS];
+        let mut aux = [[0.0; AUX]; REPLICATES];
+        for (i, sample) in samples.iter().enumerate() {
+            let replicate = (start as usize + group * REPLICATES + i) % REPLICATES;
+            if sample.li.is_finite() {
+                leaf[3 * replicate..3 * replicate + 3].copy_from_slice(&sample.li.to_array());
+            } else {
+                rejected += 1;
+            }
+            if let Some(hit) = sample.first {
+                let [a, n] = [hit.albedo, hit.normal];
+                aux[i] = [a.x, a.y, a.z, n.x, n.y, n.z, hit.depth, 1.0];
+            }
+        }
+        leaf[3 * REPLICATES..].copy_from_slice(&pairwise(&mut aux[..samples.len()]));
+        tree.add(leaf);
+    }
+    rejected
 }
 
 /// The part of the filter that a pixel draws its samples from.

@@ -81,6 +81,16 @@ impl Sight {
     }
 }
 
+impl Sight {
+    /// Of a surface with normal `n` whose model does not tell the tangent from the bitangent, seen from where `wo`
+    /// points, in world space.
+    #[inline(always)]
+    pub fn towards_viewer(n: Vec3, wo: Vec3) -> Self {
+        let frame = Frame::about(n);
+        Self { wo: frame.to_local(wo), frame, untilted: None }
+    }
+}
+
 /// A surface point with its scattering model.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Vertex<'a, B> {

@@ -11,8 +11,8 @@ mod roulette;
 mod strategies;
 
 use glam::Vec3;
-use sr_geometry::{Ray, Surface};
-use sr_sampling::{Cursor, Sequence};
+use sr_geometry::{BATCH, Rays, Surface};
+use sr_sampling::{Cursor, SampleId, Sequence};
 use sr_scene::Rgb;
 
 use crate::light::Target;
@@ -23,10 +23,34 @@ use sr_bsdf::Bsdf;
 pub use path::PathTracer;
 pub use strategies::StrategyTracer;
 
-/// Estimates the radiance along a camera ray.
+/// Estimates the radiance along camera rays.
 pub trait Integrator: Sync {
-    /// One sample. Uniforms come from `u` at dimensions from [`FIRST_DIMENSION`] on.
-    fn li<Q: Sequence>(&self, scene: &Scene, ray: Ray, u: &mut Cursor<'_, Q>) -> PathSample;
+    /// Writes a sample for each ray of a batch. Each depends on its ray and its uniforms alone, which it takes at
+    /// dimensions from [`FIRST_DIMENSION`] on.
+    fn trace<Q: Sequence>(&self, scene: &Scene, rays: &CameraRays<Q>, samples: &mut [PathSample; BATCH]);
+}
+
+/// Camera rays, and where their paths get uniforms from.
+#[derive(Clone, Debug)]
+pub struct CameraRays<Q> {
+    /// How many there are.
+    pub count: usize,
+    /// The rays.
+    pub rays: Rays,
+    /// Pixels that the samples belong to.
+    pub pixel: [u32; BATCH],
+    /// Indices of the samples in their sequences.
+    pub index: [u32; BATCH],
+    /// Sequences.
+    pub sequence: [Q; BATCH],
+}
+
+impl<Q: Sequence> CameraRays<Q> {
+    /// The uniforms of one ray, from dimension 0 on.
+    #[inline(always)]
+    pub fn cursor(&self, i: usize) -> Cursor<'_, Q> {
+        Cursor::new(&self.sequence[i], SampleId { pixel: self.pixel[i], index: self.index[i] })
+    }
 }
 
 /// Dimensions below this one belong to the camera: two for the film, two for the lens.

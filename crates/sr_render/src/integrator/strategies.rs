@@ -11,13 +11,15 @@
 
 use glam::{Vec2, Vec3};
 use sr_bsdf::AnyBsdf;
-use sr_geometry::{Hit, Ray, Surface};
+use sr_geometry::{BATCH, Hit, Ray, Surface};
 use sr_sampling::warp::{CosineHemisphere, UniformHemisphere, UniformSphere};
 use sr_sampling::{Cursor, Distribution, Mixture, Sample, Sequence, SolidAngle};
 use sr_scene::Rgb;
 
 use super::roulette::survive;
-use super::{FIRST_DIMENSION, FirstHit, Integrator, PathLimits, PathSample, from_deltas, visible};
+use super::{
+    CameraRays, FIRST_DIMENSION, FirstHit, Integrator, PathLimits, PathSample, from_deltas, visible,
+};
 use crate::light::SeenFrom;
 use crate::scene::Scene;
 use crate::strategy::{Basic, Density, MAX_TECHNIQUES, Strategy};
@@ -148,6 +150,14 @@ enum Share {
 }
 
 impl Integrator for StrategyTracer {
+    fn trace<Q: Sequence>(&self, scene: &Scene, rays: &CameraRays<Q>, samples: &mut [PathSample; BATCH]) {
+        for (i, sample) in samples[..rays.count].iter_mut().enumerate() {
+            *sample = self.li(scene, rays.rays.get(i), &mut rays.cursor(i));
+        }
+    }
+}
+
+impl StrategyTracer {
     fn li<Q: Sequence>(&self, scene: &Scene, mut ray: Ray, u: &mut Cursor<'_, Q>) -> PathSample {
         let mut path = PathSample::default();
         let mut beta = Rgb::ONE;

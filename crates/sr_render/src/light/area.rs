@@ -69,17 +69,67 @@ impl Parallelogram {
     }
 }
 
+impl Parallelogram {
+    #[inline(always)]
+    fn patch(&self) -> Patch {
+        Patch { corner: self.corner, edges: self.edges, normal: self.normal, is_triangle: false }
+    }
+}
+
 impl Triangle {
+    #[inline(always)]
+    fn patch(&self) -> Patch {
+        let [corner, b, c] = self.positions;
+        Patch { corner, edges: [b - corner, c - corner], normal: self.normal, is_triangle: true }
+    }
+
     fn vertex(&self, i: usize) -> (Vec3, Vec2) {
         (self.positions[i], self.uvs[i])
     }
 }
 
-/// A point on a light.
-struct LightPoint {
-    p: Vec3,
-    normal: Vec3,
-    uv: Vec2,
+/// A flat piece of a light: a parallelogram, or the half of one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Patch {
+    pub corner: Vec3,
+    /// From the corner.
+    pub edges: [Vec3; 2],
+    /// Unit normal of the emitting side.
+    pub normal: Vec3,
+    pub is_triangle: bool,
+}
+
+/// A point of a [`Patch`], seen from another point.
+pub(super) struct PatchSample {
+    pub p: Vec3,
+    /// Direction to it.
+    pub wi: Vec3,
+    /// Density in sr⁻¹; 0 if the piece shines the other way.
+    pub pdf: f32,
+}
+
+impl Patch {
+    /// Coordinates along the edges, uniform over the piece.
+    #[inline(always)]
+    fn coordinates(is_triangle: bool, u: Vec2) -> Vec2 {
+        let b = barycentrics(u);
+        if is_triangle { Vec2::new(b.y, b.z) } else { u }
+    }
+
+    /// Draws a point, with density `pdf_area` per square unit of length. Does not branch.
+    #[inline(always)]
+    pub fn sample(&self, pdf_area: f32, from: Vec3, u: Vec2) -> PatchSample {
+        let at = Self::coordinates(self.is_triangle, u);
+        let p = self.corner + at.x * self.edges[0] + at.y * self.edges[1];
+        let to_light = p - from;
+        let distance_squared = to_light.length_squared();
+        let wi = to_light / distance_squared.sqrt();
+        let cos_light = -self.normal.dot(wi);
+        let pdf = to_solid_angle(pdf_area, distance_squared, cos_light);
+        // The cosine is no number where the points coincide.
+        let pdf = if cos_light > 0.0 && pdf < f32::INFINITY { pdf } else { 0.0 };
+        PatchSample { p, wi, pdf }
+    }
 }
 
 impl AreaLight {
@@ -145,28 +195,42 @@ impl AreaLight {
         if ng.dot(w) > 0.0 { textures.color(self.radiance, uv) } else { Rgb::ZERO }
     }
 
+    /// Does `sample` make use of `u_pick`?
+    pub(super) fn must_pick(&self) -> bool {
+        matches!(self.form, Form::Mesh { .. })
+    }
+
+    /// A flat piece, chosen by `u_pick`, and the density of its points; `None` for a light that is not flat, or whose
+    /// radiance depends on the point.
+    #[inline(always)]
+    pub(super) fn patch(&self, u_pick: f32) -> Option<(Patch, f32)> {
+        let ColorInput::Constant(_) = self.radiance else { return None };
+        let patch = match &self.form {
+            Form::Mesh { triangles, by_area } => triangles[by_area.sample_and_reuse(u_pick).0.value].patch(),
+            Form::Parallelogram(q) => q.patch(),
+            Form::Sphere { .. } | Form::Disk { .. } => return None,
+        };
+        Some((patch, 1.0 / self.area))
+    }
+
     /// Draws a direction from `from` to the light. `u_pick` chooses a triangle, `u` a point.
     ///
     /// Triangles and disks are sampled by area; a sphere seen from outside by the cone it fills
     /// (Shirley, Wang & Zimmerman 1996).
     #[inline(always)]
     pub(crate) fn sample(&self, light: LightId, from: Vec3, u_pick: f32, u: Vec2) -> Option<LightSample> {
-        let point = match &self.form {
+        let (patch, u, uv) = match &self.form {
             Form::Mesh { triangles, by_area } => {
                 let t = &triangles[by_area.sample_and_reuse(u_pick).0.value];
-                let b = barycentrics(u);
-                let mix = |v: [Vec3; 3]| b.x * v[0] + b.y * v[1] + b.z * v[2];
-                let uv = b.x * t.uvs[0] + b.y * t.uvs[1] + b.z * t.uvs[2];
-                LightPoint { p: mix(t.positions), normal: t.normal, uv }
+                let at = Patch::coordinates(true, u);
+                let [uv0, uv1, uv2] = t.uvs;
+                (t.patch(), u, uv0 + at.x * (uv1 - uv0) + at.y * (uv2 - uv0))
             }
-            Form::Parallelogram(q) => LightPoint {
-                p: q.corner + u.x * q.edges[0] + u.y * q.edges[1],
-                normal: q.normal,
-                uv: q.corner_uv + u.x * q.edge_uvs[0] + u.y * q.edge_uvs[1],
-            },
+            Form::Parallelogram(q) => (q.patch(), u, q.corner_uv + u.x * q.edge_uvs[0] + u.y * q.edge_uvs[1]),
             Form::Disk { center, u_axis, v_axis, normal } => {
                 let d = concentric_disk(u);
-                LightPoint { p: *center + d.x * *u_axis + d.y * *v_axis, normal: *normal, uv: disk_uv(d) }
+                let edges = [*u_axis, *v_axis];
+                (Patch { corner: *center, edges, normal: *normal, is_triangle: false }, d, disk_uv(d))
             }
             Form::Sphere { center, radius, inwards, .. } => {
                 let sample = if *inwards { sphere::sample_area } else { sphere::sample_cone };
@@ -174,17 +238,9 @@ impl AreaLight {
                 return Some(LightSample { wi, pdf, target: Target::Point(p), light, uv: Vec2::ZERO });
             }
         };
-        let to_light = point.p - from;
-        let distance_squared = to_light.length_squared();
-        let wi = to_light / distance_squared.sqrt();
-        let cos_light = -point.normal.dot(wi);
-        // also false for NaN, where the points coincide
-        if !(cos_light > 0.0) {
-            return None;
-        }
-        let pdf = to_solid_angle(1.0 / self.area, distance_squared, cos_light);
-        let target = Target::Point(point.p);
-        pdf.is_finite().then_some(LightSample { wi, pdf, target, light, uv: point.uv })
+        let s = patch.sample(1.0 / self.area, from, u);
+        let target = Target::Point(s.p);
+        (s.pdf > 0.0).then_some(LightSample { wi: s.wi, pdf: s.pdf, target, light, uv })
     }
 
     /// Radiance that a sampled point of the light emits towards where it was sampled from.

@@ -5,6 +5,7 @@ use sr_geometry::{Geometry, ShapeId, Surface};
 use sr_sampling::{AliasTable, power_weight};
 use sr_scene::Rgb;
 
+use super::area::Patch;
 use super::{
     AreaLight, ConstantEnvironment, DeltaSample, DirectionalLight, Environment, LightSample, PointLight,
     SeenFrom, SpotLight,
@@ -124,6 +125,41 @@ impl Lights {
         (0..self.extended.len() as u32).map(LightId)
     }
 
+    /// Is there a light with an extent?
+    pub fn has_extended(&self) -> bool {
+        !self.extended.is_empty()
+    }
+
+    /// Is there a light infinitely far away that has an extent?
+    pub fn has_environment(&self) -> bool {
+        !self.environments.is_empty()
+    }
+
+    /// Does sampling the lights with an extent make use of the uniform that chooses?
+    pub(crate) fn must_pick(&self) -> bool {
+        match &self.extended[..] {
+            [Extended::Area(area)] => area.must_pick(),
+            [_] => false,
+            _ => true,
+        }
+    }
+
+    /// Chooses a light with an extent: which, its probability, and the uniform made new.
+    #[inline(always)]
+    pub(super) fn pick(&self, u_pick: f32) -> Option<(LightId, f32, f32)> {
+        let (index, pmf, rest) = self.extended_choice.sample(u_pick)?;
+        Some((LightId(index as u32), pmf, rest))
+    }
+
+    /// A flat piece of a light that shines alike everywhere, and the density of its points; `None` for other lights.
+    #[inline(always)]
+    pub(super) fn patch(&self, id: LightId, u_pick: f32) -> Option<(Patch, f32)> {
+        match &self.extended[id.0 as usize] {
+            Extended::Area(area) => area.patch(u_pick),
+            Extended::Constant(_) | Extended::Environment(_) => None,
+        }
+    }
+
     /// Is there a light that only light sampling can find?
     pub fn has_deltas(&self) -> bool {
         !self.deltas.is_empty()
@@ -133,8 +169,8 @@ impl Lights {
     /// reaching this light: choice times direction.
     #[inline(always)]
     pub fn sample(&self, from: Vec3, u_pick: f32, u: Vec2) -> Option<LightSample> {
-        let (index, pmf, u_pick) = self.extended_choice.sample(u_pick)?;
-        let mut s = self.sample_one(LightId(index as u32), from, u_pick, u)?;
+        let (id, pmf, u_pick) = self.pick(u_pick)?;
+        let mut s = self.sample_one(id, from, u_pick, u)?;
         s.pdf *= pmf;
         Some(s)
     }

@@ -11,6 +11,7 @@
 //! Invariant: `pdf` is the density with which `sample` draws a direction, lights behind others included.
 
 mod area;
+mod batch;
 mod environment;
 mod list;
 mod point;
@@ -21,6 +22,7 @@ use sr_scene::Rgb;
 
 pub use area::AreaLight;
 pub(crate) use area::Triangle;
+pub(crate) use batch::{DeltaSamples, LightSamples};
 pub use environment::{ConstantEnvironment, Environment};
 pub(crate) use list::{Delta, Extended};
 pub use list::{LightId, Lights};

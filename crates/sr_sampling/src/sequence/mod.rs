@@ -31,7 +31,7 @@ pub struct SampleId {
 /// A source of uniforms in [0, 1). Pure: the same arguments give the same bits, in any order.
 ///
 /// A dimension is used by one call: `get_1d` takes `dim`, `get_2d` takes `dim` and `dim + 1`.
-pub trait Sequence: Clone + Sync {
+pub trait Sequence: Copy + Sync {
     /// One uniform.
     fn get_1d(&self, at: SampleId, dim: u32) -> f32;
 

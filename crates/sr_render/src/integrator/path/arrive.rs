@@ -1,0 +1,97 @@
+//! Paths come to surfaces: what shines there is added, and the scattering models are found.
+
+use glam::Vec3;
+use sr_geometry::{BATCH, Hit, ShapeId};
+use sr_sampling::{Sequence, power_weight};
+use sr_scene::Rgb;
+
+use super::super::PathSample;
+use super::Step;
+use super::state::{Paths, Vertices};
+use crate::scene::Scene;
+
+/// Adds the light that rays find, and what the BSDF's part in finding it is worth.
+#[inline(always)]
+pub(super) fn gather_light<Q: Sequence>(
+    scene: &Scene,
+    step: &Step,
+    paths: &Paths<Q>,
+    at: &mut Vertices,
+    samples: &mut [PathSample; BATCH],
+) {
+    if !step.sees_lights {
+        return;
+    }
+    let has_environment = scene.lights.has_environment();
+    for i in 0..paths.count.min(BATCH) {
+        let le = match at.hits.get(i) {
+            None if has_environment => environment(scene, paths, i),
+            None => continue,
+            Some(hit) => match scene.light_of(hit.shape) {
+                Some(_) => emitted(scene, paths, at, i, &hit),
+                None => continue,
+            },
+        };
+        samples[paths.slot[i] as usize % BATCH].li += paths.beta.get(i) * le;
+    }
+}
+
+#[inline(never)]
+fn environment<Q: Sequence>(scene: &Scene, paths: &Paths<Q>, i: usize) -> Rgb {
+    let (direction, pdf) = (paths.rays.direction.get(i), paths.pdf[i]);
+    if pdf == f32::INFINITY {
+        scene.lights.environment(direction, |_| 1.0)
+    } else {
+        scene.lights.environment_by_power(direction, pdf)
+    }
+}
+
+#[inline(never)]
+fn emitted<Q: Sequence>(scene: &Scene, paths: &Paths<Q>, at: &Vertices, i: usize, hit: &Hit) -> Rgb {
+    let Some(light) = scene.light_of(hit.shape) else { return Rgb::ZERO };
+    let ray = paths.rays.get(i);
+    let surface = at.surfaces.get(i, scene.geometry.uv(&ray, hit));
+    let le = scene.lights.emitted(light, &surface, -ray.direction, &scene.textures);
+    let pdf = paths.pdf[i];
+    if le == Rgb::ZERO || pdf == f32::INFINITY {
+        return le;
+    }
+    le * power_weight(pdf, scene.lights.pdf_of_point(light, paths.from.get(i), &surface))
+}
+
+/// Finds the scattering models: Lambertian ones with their albedo and normal, the others by number.
+#[inline(always)]
+pub(super) fn find_models<Q: Sequence>(scene: &Scene, paths: &Paths<Q>, at: &mut Vertices) {
+    let count = paths.count.min(BATCH);
+    let mut facing = [0.0; BATCH];
+    for i in 0..count {
+        facing[i] = -at.surfaces.ns.get(i).dot(paths.rays.direction.get(i));
+    }
+    let mut turn = [1.0; BATCH];
+    at.others.clear();
+    for i in 0..count {
+        let is_hit = at.hits.t[i] < f32::INFINITY;
+        // A ray that hits nothing may ask for the model of whatever was hit before it.
+        let material = scene.materials.get(scene.material_of(ShapeId(at.hits.shape[i])));
+        let seen = material.lambert(facing[i] < 0.0);
+        if let Some((color, turned)) = seen {
+            let albedo = match color {
+                sr_scene::ColorInput::Constant(albedo) => albedo,
+                textured => match at.hits.get(i) {
+                    Some(hit) => scene.textures.color(textured, scene.geometry.uv(&paths.rays.get(i), &hit)),
+                    None => Rgb::ZERO,
+                },
+            };
+            at.albedo.set(i, albedo);
+            turn[i] = if turned { -1.0 } else { 1.0 };
+        }
+        at.others.push_if(is_hit && seen.is_none(), i);
+    }
+    for i in 0..count {
+        let ns: Vec3 = at.surfaces.ns.get(i);
+        at.normal.set(i, ns * turn[i]);
+        // Paths that have left the scene end here.
+        let weight = if at.hits.t[i] < f32::INFINITY { at.albedo.get(i) } else { Rgb::ZERO };
+        at.albedo.set(i, weight);
+    }
+}
