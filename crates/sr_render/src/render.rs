@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use glam::Vec2;
 use rayon::prelude::*;
-use sr_geometry::{BATCH, Rays, Vec2s};
+use sr_geometry::{BATCH, Vec2s};
 use sr_sampling::{Independent, OwenSobol, Sequence, SequenceKind};
 use sr_scene::Settings;
 
@@ -230,11 +230,14 @@ impl<'a, I: Integrator, Q: Sequence> Sampler<'a, I, Q> {
     fn pass(&self, first: u32, len: u32, sums: &mut [PixelSums], cancel: &AtomicBool) -> Option<u64> {
         let rejected = AtomicU64::new(0);
         let pixels_per_task = PIXELS_PER_TASK.max(BATCH / len as usize);
-        sums.par_chunks_mut(pixels_per_task).enumerate().for_each(|(task, sums)| {
-            let first_pixel = (task * pixels_per_task) as u32;
-            let tile = Tile { sampler: self, first_pixel, first, len, sums, cancel };
-            rejected.fetch_add(self.isa.run(tile), Ordering::Relaxed);
-        });
+        sums.par_chunks_mut(pixels_per_task).enumerate().for_each_init(
+            || Desk::new(self),
+            |desk, (task, sums)| {
+                let first_pixel = (task * pixels_per_task) as u32;
+                let tile = Tile { sampler: self, desk, first_pixel, first, len, sums, cancel };
+                rejected.fetch_add(self.isa.run(tile), Ordering::Relaxed);
+            },
+        );
         (!cancel.load(Ordering::Relaxed)).then(|| rejected.into_inner())
     }
 
@@ -292,9 +295,30 @@ impl<'a, I: Integrator, Q: Sequence> Sampler<'a, I, Q> {
     }
 }
 
+/// Memory for a batch of samples, which one task after the other uses.
+struct Desk<I: Integrator, Q: Sequence> {
+    rays: Box<CameraRays<Q>>,
+    workspace: I::Workspace<Q>,
+    samples: Box<[PathSample; BATCH]>,
+    tree: PairwiseSum,
+}
+
+impl<I: Integrator, Q: Sequence> Desk<I, Q> {
+    fn new(sampler: &Sampler<'_, I, Q>) -> Self {
+        let sequence = sampler.sequences[0];
+        Self {
+            rays: Box::new(CameraRays::none(sequence)),
+            workspace: sampler.integrator.workspace(sequence),
+            samples: Box::new([PathSample::default(); BATCH]),
+            tree: PairwiseSum::new(),
+        }
+    }
+}
+
 /// A few neighbouring pixels of a pass.
-struct Tile<'a, I, Q> {
+struct Tile<'a, I: Integrator, Q: Sequence> {
     sampler: &'a Sampler<'a, I, Q>,
+    desk: &'a mut Desk<I, Q>,
     first_pixel: u32,
     first: u32,
     len: u32,
@@ -309,29 +333,22 @@ impl<I: Integrator, Q: Sequence> Work for Tile<'_, I, Q> {
     /// A batch holds all samples of some pixels, or some of one.
     #[inline(always)]
     fn run(self) -> u64 {
-        let Self { sampler, first_pixel, first, len, sums, cancel } = self;
+        let Self { sampler, desk, first_pixel, first, len, sums, cancel } = self;
+        let Desk { rays, workspace, samples, tree } = desk;
         let per_pixel = len.min(BATCH as u32);
-        let mut rays = Box::new(CameraRays {
-            count: 0,
-            rays: Rays::NONE,
-            pixel: [0; BATCH],
-            index: [0; BATCH],
-            sequence: [sampler.sequences[0]; BATCH],
-        });
-        let mut samples = Box::new([PathSample::default(); BATCH]);
-        let mut tree = PairwiseSum::new();
         let mut rejected = 0;
         let pixels_per_batch = BATCH / per_pixel as usize;
         for (chunk, sums) in sums.chunks_mut(pixels_per_batch).enumerate() {
             let at = first_pixel + (chunk * pixels_per_batch) as u32;
             for start in (first..first + len).step_by(per_pixel as usize) {
                 if cancel.load(Ordering::Relaxed) {
+                    // Half a sum may be left in the tree, but nothing more is added to it.
                     return rejected;
                 }
-                sampler.camera_rays(&mut rays, at..at + sums.len() as u32, start, per_pixel);
-                sampler.integrator.trace(sampler.scene, &rays, &mut samples);
+                sampler.camera_rays(rays, at..at + sums.len() as u32, start, per_pixel);
+                sampler.integrator.trace(sampler.scene, rays, workspace, samples);
                 for (samples, sums) in samples[..rays.count].chunks(per_pixel as usize).zip(&mut *sums) {
-                    rejected += add_samples(samples, start, &mut tree);
+                    rejected += add_samples(samples, start, tree);
                     if start + per_pixel == first + len {
                         *sums = tree.take_total();
                     }

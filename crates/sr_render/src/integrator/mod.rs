@@ -25,9 +25,21 @@ pub use strategies::StrategyTracer;
 
 /// Estimates the radiance along camera rays.
 pub trait Integrator: Sync {
+    /// Memory that batches use one after the other.
+    type Workspace<Q: Sequence>;
+
+    /// Memory for one thread; `sequence` may be any of the kind.
+    fn workspace<Q: Sequence>(&self, sequence: Q) -> Self::Workspace<Q>;
+
     /// Writes a sample for each ray of a batch. Each depends on its ray and its uniforms alone, which it takes at
     /// dimensions from [`FIRST_DIMENSION`] on.
-    fn trace<Q: Sequence>(&self, scene: &Scene, rays: &CameraRays<Q>, samples: &mut [PathSample; BATCH]);
+    fn trace<Q: Sequence>(
+        &self,
+        scene: &Scene,
+        rays: &CameraRays<Q>,
+        workspace: &mut Self::Workspace<Q>,
+        samples: &mut [PathSample; BATCH],
+    );
 }
 
 /// Camera rays, and where their paths get uniforms from.
@@ -46,6 +58,12 @@ pub struct CameraRays<Q> {
 }
 
 impl<Q: Sequence> CameraRays<Q> {
+    /// No rays; `sequence` may be any of the kind.
+    pub fn none(sequence: Q) -> Self {
+        let (pixel, index, sequence) = ([0; BATCH], [0; BATCH], [sequence; BATCH]);
+        Self { count: 0, rays: Rays::NONE, pixel, index, sequence }
+    }
+
     /// The uniforms of one ray, from dimension 0 on.
     #[inline(always)]
     pub fn cursor(&self, i: usize) -> Cursor<'_, Q> {

@@ -150,7 +150,17 @@ enum Share {
 }
 
 impl Integrator for StrategyTracer {
-    fn trace<Q: Sequence>(&self, scene: &Scene, rays: &CameraRays<Q>, samples: &mut [PathSample; BATCH]) {
+    type Workspace<Q: Sequence> = ();
+
+    fn workspace<Q: Sequence>(&self, _sequence: Q) {}
+
+    fn trace<Q: Sequence>(
+        &self,
+        scene: &Scene,
+        rays: &CameraRays<Q>,
+        (): &mut (),
+        samples: &mut [PathSample; BATCH],
+    ) {
         for (i, sample) in samples[..rays.count].iter_mut().enumerate() {
             *sample = self.li(scene, rays.rays.get(i), &mut rays.cursor(i));
         }

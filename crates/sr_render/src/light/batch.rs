@@ -21,6 +21,8 @@ pub(crate) struct LightSamples {
     pub t_end: [f32; BATCH],
     light: [u32; BATCH],
     uv: Vec2s,
+    /// What the samples are drawn from.
+    patches: Patches,
 }
 
 impl LightSamples {
@@ -31,6 +33,7 @@ impl LightSamples {
         t_end: [1.0; BATCH],
         light: [0; BATCH],
         uv: Vec2s::splat(Vec2::ZERO),
+        patches: Patches::NONE,
     };
 
     /// The sample from point `i`. There must be one.
@@ -154,26 +157,26 @@ impl Lights {
         samples: &mut LightSamples,
     ) {
         let count = count.min(BATCH);
-        let mut patches = Patches::NONE;
         let (mut others, mut other_count) = ([0_u32; BATCH], 0);
         for i in 0..count {
             let mut is_flat = false;
             if let Some((id, pmf, rest)) = self.pick(u_pick[i])
                 && let Some((patch, pdf_area)) = self.patch(id, rest)
             {
-                patches.set(i, &patch, pmf * pdf_area, id);
+                samples.patches.set(i, &patch, pmf * pdf_area, id);
                 is_flat = true;
             }
             others[other_count % BATCH] = i as u32;
             other_count += usize::from(!is_flat);
         }
         for i in 0..count {
+            let patches = &samples.patches;
             let s = patches.get(i).sample(patches.pdf_area[i], from.get(i), u.get(i));
             samples.wi.set(i, s.wi);
             samples.pdf[i] = s.pdf;
             samples.target.set(i, s.p);
             samples.t_end[i] = 1.0;
-            samples.light[i] = patches.light[i];
+            samples.light[i] = samples.patches.light[i];
         }
         for &i in &others[..other_count] {
             let i = i as usize % BATCH;

@@ -1,14 +1,13 @@
 //! Next-event estimation: light that sampled lights send to vertices.
 
-use glam::Vec3;
-use sr_geometry::{BATCH, Rays, Vec2s, Vec3s};
+use glam::Vec2;
+use sr_geometry::{BATCH, Surfaces, Vec2s, Vec3s};
 use sr_sampling::{Sequence, power_weight};
 use sr_scene::Rgb;
 
 use super::super::PathSample;
-use super::state::{List, Paths, Vertices};
+use super::state::{Paths, Shadow, Vertices};
 use super::{Step, dimension};
-use crate::light::{DeltaSamples, LightSamples};
 use crate::scene::Scene;
 
 /// Samples a light of each kind for every vertex.
@@ -16,7 +15,7 @@ use crate::scene::Scene;
 pub(super) fn sample_lights<Q: Sequence>(scene: &Scene, step: &Step, paths: &Paths<Q>, at: &mut Vertices) {
     let count = paths.count.min(BATCH);
     if scene.lights.has_extended() {
-        let (mut u_pick, mut u) = ([0.0; BATCH], Vec2s::splat(glam::Vec2::ZERO));
+        let (mut u_pick, mut u) = ([0.0; BATCH], Vec2s::splat(Vec2::ZERO));
         if scene.lights.must_pick() {
             paths.uniforms_1d(step.dimension + dimension::PICK, &mut u_pick);
         }
@@ -40,58 +39,54 @@ pub(super) fn connect<Q: Sequence>(
     samples: &mut [PathSample; BATCH],
 ) {
     let count = paths.count.min(BATCH);
-    let mut arriving = Vec3s::splat(Rgb::ZERO);
-    let mut list = List::EMPTY;
+    let Vertices { surfaces, lights, deltas, to_light, to_delta, shadow, .. } = at;
     if scene.lights.has_extended() {
         for i in 0..count {
-            let pdf = at.lights.pdf[i];
-            let weight = power_weight(pdf, at.to_light.pdf[i]) / pdf;
-            arriving.set(i, paths.beta.get(i) * at.to_light.f_cos.get(i) * weight);
+            let pdf = lights.pdf[i];
+            let share = if pdf > 0.0 { power_weight(pdf, to_light.pdf[i]) / pdf } else { 0.0 };
+            shadow.arriving.set(i, paths.beta.get(i) * to_light.f_cos.get(i) * share);
         }
-        for i in 0..count {
-            list.push_if(arriving.get(i) != Rgb::ZERO && at.lights.pdf[i] > 0.0, i);
-        }
-        let LightSamples { wi, target, t_end, .. } = &at.lights;
-        keep_visible(scene, at, (wi, target, t_end), &mut list);
-        for i in list.iter() {
-            let radiance = scene.lights.radiance(&at.lights.get(i), &scene.textures);
-            samples[paths.slot[i] as usize % BATCH].li += arriving.get(i) * radiance;
+        shadow.keep_visible(scene, surfaces, (&lights.wi, &lights.target, &lights.t_end), count);
+        for i in shadow.list.iter() {
+            let radiance = scene.lights.radiance(&lights.get(i), &scene.textures);
+            samples[paths.slot[i] as usize % BATCH].li += shadow.arriving.get(i) * radiance;
         }
     }
     if scene.lights.has_deltas() {
-        list.clear();
         for i in 0..count {
-            arriving.set(i, paths.beta.get(i) * at.to_delta.f_cos.get(i) * at.deltas.radiance.get(i));
+            shadow.arriving.set(i, paths.beta.get(i) * to_delta.f_cos.get(i) * deltas.radiance.get(i));
         }
-        for i in 0..count {
-            list.push_if(arriving.get(i) != Rgb::ZERO, i);
-        }
-        let DeltaSamples { wi, target, t_end, .. } = &at.deltas;
-        keep_visible(scene, at, (wi, target, t_end), &mut list);
-        for i in list.iter() {
-            samples[paths.slot[i] as usize % BATCH].li += arriving.get(i);
+        shadow.keep_visible(scene, surfaces, (&deltas.wi, &deltas.target, &deltas.t_end), count);
+        for i in shadow.list.iter() {
+            samples[paths.slot[i] as usize % BATCH].li += shadow.arriving.get(i);
         }
     }
 }
 
-/// Traces the shadow rays of the vertices in `list`, and keeps those that see their light.
-#[inline(always)]
-fn keep_visible(
-    scene: &Scene,
-    at: &Vertices,
-    (wi, target, t_end): (&Vec3s, &Vec3s, &[f32; BATCH]),
-    list: &mut List,
-) {
-    let mut rays = Rays::NONE;
-    for k in 0..list.len().min(BATCH) {
-        let i = list.get(k);
-        let surface = at.surfaces.get(i, glam::Vec2::ZERO);
-        let (wi, target): (Vec3, Vec3) = (wi.get(i), target.get(i));
-        let ray =
-            if t_end[i] == f32::INFINITY { surface.spawn_ray(wi) } else { surface.spawn_ray_to(target) };
-        rays.set(k, &ray);
+impl Shadow {
+    /// Lists the vertices at which light arrives: traces the shadow rays of those for which it matters.
+    #[inline(always)]
+    fn keep_visible(
+        &mut self,
+        scene: &Scene,
+        surfaces: &Surfaces,
+        (wi, target, t_end): (&Vec3s, &Vec3s, &[f32; BATCH]),
+        count: usize,
+    ) {
+        self.list.clear();
+        for i in 0..count {
+            self.list.push_if(self.arriving.get(i) != Rgb::ZERO, i);
+        }
+        for k in 0..self.list.len().min(BATCH) {
+            let i = self.list.get(k);
+            let surface = surfaces.get(i, Vec2::ZERO);
+            let ray = match t_end[i] {
+                f32::INFINITY => surface.spawn_ray(wi.get(i)),
+                _ => surface.spawn_ray_to(target.get(i)),
+            };
+            self.rays.set(k, &ray);
+        }
+        scene.geometry.occluded_batch(&self.rays, self.list.len(), &mut self.occluded);
+        self.list.keep(|k| !self.occluded[k % BATCH]);
     }
-    let mut occluded = [false; BATCH];
-    scene.geometry.occluded_batch(&rays, list.len(), &mut occluded);
-    list.keep(|k| !occluded[k % BATCH]);
 }

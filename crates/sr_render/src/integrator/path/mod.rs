@@ -42,6 +42,12 @@ pub struct PathTracer {
     pub limits: PathLimits,
 }
 
+/// Memory for a batch of paths.
+pub struct Workspace<Q> {
+    paths: Box<Paths<Q>>,
+    at: Box<Vertices>,
+}
+
 /// A vertex of all paths of a batch, as numbers: the steps' common ground.
 #[derive(Clone, Copy)]
 struct Step {
@@ -70,30 +76,42 @@ impl PathTracer {
 }
 
 impl Integrator for PathTracer {
+    type Workspace<Q: Sequence> = Workspace<Q>;
+
+    fn workspace<Q: Sequence>(&self, sequence: Q) -> Workspace<Q> {
+        Workspace { paths: Box::new(Paths::none(sequence)), at: Box::new(Vertices::NONE) }
+    }
+
     #[inline(always)]
-    fn trace<Q: Sequence>(&self, scene: &Scene, rays: &CameraRays<Q>, samples: &mut [PathSample; BATCH]) {
+    fn trace<Q: Sequence>(
+        &self,
+        scene: &Scene,
+        rays: &CameraRays<Q>,
+        workspace: &mut Workspace<Q>,
+        samples: &mut [PathSample; BATCH],
+    ) {
         samples[..rays.count].fill(PathSample::default());
-        let mut paths = Box::new(Paths::new(rays));
-        let mut at = Box::new(Vertices::NONE);
+        let Workspace { paths, at } = workspace;
+        paths.start(rays);
         let mut depth = 0;
         while paths.count > 0 {
             let step = self.step(depth);
             scene.geometry.intersect_batch(&paths.rays, paths.count, &mut at.hits);
             scene.geometry.surfaces(&paths.rays, &at.hits, paths.count, &mut at.surfaces);
-            arrive::gather_light(scene, &step, &paths, &mut at, samples);
+            arrive::gather_light(scene, &step, paths, at, samples);
             if step.last && !step.first {
                 break;
             }
-            arrive::find_models(scene, &paths, &mut at);
+            arrive::find_models(scene, paths, at);
             if !step.last {
-                direct::sample_lights(scene, &step, &paths, &mut at);
+                direct::sample_lights(scene, &step, paths, at);
             }
-            scatter::scatter(scene, &step, &paths, &mut at, samples);
+            scatter::scatter(scene, &step, paths, at, samples);
             if step.last {
                 break;
             }
-            direct::connect(scene, &paths, &mut at, samples);
-            go_on::go_on(&step, &mut paths, &at, samples);
+            direct::connect(scene, paths, at, samples);
+            go_on::go_on(&step, paths, at, samples);
             depth += 1;
         }
     }

@@ -31,22 +31,32 @@ pub(super) struct Paths<Q> {
 }
 
 impl<Q: Sequence> Paths<Q> {
-    pub fn new(camera: &CameraRays<Q>) -> Self {
-        let mut slot = [0; BATCH];
-        for (i, slot) in slot.iter_mut().enumerate() {
-            *slot = i as u32;
-        }
+    /// No paths.
+    pub fn none(sequence: Q) -> Self {
         Self {
-            count: camera.count,
-            rays: camera.rays.clone(),
+            count: 0,
+            rays: Rays::NONE,
             beta: Vec3s::splat(Rgb::ONE),
             eta: [1.0; BATCH],
             from: Vec3s::splat(Vec3::ZERO),
             pdf: [f32::INFINITY; BATCH],
-            slot,
-            pixel: camera.pixel,
-            index: camera.index,
-            sequence: camera.sequence,
+            slot: [0; BATCH],
+            pixel: [0; BATCH],
+            index: [0; BATCH],
+            sequence: [sequence; BATCH],
+        }
+    }
+
+    /// Starts a path along each camera ray.
+    #[inline(always)]
+    pub fn start(&mut self, camera: &CameraRays<Q>) {
+        self.count = camera.count;
+        for i in 0..camera.count.min(BATCH) {
+            self.rays.set(i, &camera.rays.get(i));
+            self.beta.set(i, Rgb::ONE);
+            (self.eta[i], self.pdf[i]) = (1.0, f32::INFINITY);
+            (self.slot[i], self.pixel[i], self.index[i]) = (i as u32, camera.pixel[i], camera.index[i]);
+            self.sequence[i] = camera.sequence[i];
         }
     }
 
@@ -101,6 +111,7 @@ pub(super) struct Vertices {
     pub deltas: DeltaSamples,
     pub to_light: Towards,
     pub to_delta: Towards,
+    pub shadow: Shadow,
     pub scattered: Scattered,
 }
 
@@ -115,6 +126,7 @@ impl Vertices {
         deltas: DeltaSamples::NONE,
         to_light: Towards::NONE,
         to_delta: Towards::NONE,
+        shadow: Shadow::NONE,
         scattered: Scattered::NONE,
     };
 }
@@ -129,6 +141,26 @@ pub(super) struct Towards {
 
 impl Towards {
     const NONE: Self = Self { f_cos: Vec3s::splat(Rgb::ZERO), pdf: [0.0; BATCH] };
+}
+
+/// Light on its way to vertices, and the rays that find out whether it arrives.
+pub(super) struct Shadow {
+    /// What each path would gain, over the light's radiance.
+    pub arriving: Vec3s,
+    /// The vertices for which it matters, and then those at which it arrives.
+    pub list: List,
+    /// Shadow rays, in the order of the list.
+    pub rays: Rays,
+    pub occluded: [bool; BATCH],
+}
+
+impl Shadow {
+    const NONE: Self = Self {
+        arriving: Vec3s::splat(Rgb::ZERO),
+        list: List::EMPTY,
+        rays: Rays::NONE,
+        occluded: [false; BATCH],
+    };
 }
 
 /// The directions in which paths go on: the fields of [`sr_bsdf::BsdfSample`].
