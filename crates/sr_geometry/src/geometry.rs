@@ -312,12 +312,6 @@ impl Corners<'_> {
         self.indices.map(|i| self.geometry.positions[(self.mesh.first_vertex + i) as usize])
     }
 
-    /// Is the triangle shaded as flat as it is?
-    #[inline(always)]
-    pub fn are_flat(&self) -> bool {
-        self.mesh.first_normal.is_none()
-    }
-
     /// Normals, if the mesh has any.
     #[inline(always)]
     pub fn normals(&self) -> Option<[Vec3; 3]> {

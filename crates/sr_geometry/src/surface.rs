@@ -1,6 +1,6 @@
 //! What shading needs to know of a point on a shape, and rays that leave it.
 
-use glam::{Vec2, Vec3};
+use glam::{BVec3, Vec2, Vec3};
 
 use crate::geometry::Corners;
 use crate::offset::{ROUNDING, clearance};
@@ -87,12 +87,18 @@ impl Located {
     }
 }
 
+/// Zero if the normals cancel.
+#[inline(always)]
+fn interpolated_normal([n0, n1, n2]: [Vec3; 3], b1: f32, b2: f32) -> Vec3 {
+    ((1.0 - b1 - b2) * n0 + b1 * n1 + b2 * n2).normalize_or_zero()
+}
+
 impl Corners<'_> {
     /// The interpolated normal, if there are normals and they do not cancel.
     #[inline(always)]
     fn shading_normal(&self, b1: f32, b2: f32) -> Option<Vec3> {
-        let [n0, n1, n2] = self.normals()?;
-        ((1.0 - b1 - b2) * n0 + b1 * n1 + b2 * n2).try_normalize()
+        let n = interpolated_normal(self.normals()?, b1, b2);
+        (n != Vec3::ZERO).then_some(n)
     }
 
     /// Texture coordinates; barycentric ones if there are none.
@@ -158,35 +164,43 @@ impl Geometry {
     pub fn surfaces(&self, rays: &Rays, hits: &Hits, count: usize, surfaces: &mut Surfaces) {
         let count = count.min(BATCH);
         let mut positions = [const { Vec3s::splat(Vec3::ZERO) }; 3];
-        // Those that are more than a flat triangle.
+        let mut normals = [const { Vec3s::splat(Vec3::ZERO) }; 3];
+        let (mut is_smooth, mut any_smooth) = ([0_u32; BATCH], false);
+        // Those that are no triangles in world space.
         let (mut others, mut other_count) = ([0_u32; BATCH], 0);
         for i in 0..count {
             let Some(hit) = hits.get(i) else { continue };
-            let mut is_flat = false;
-            if let Some(corners) = self.world_corners(&hit) {
-                let [p0, p1, p2] = corners.positions();
-                positions[0].set(i, p0);
-                positions[1].set(i, p1);
-                positions[2].set(i, p2);
-                is_flat = corners.are_flat();
+            let Some(corners) = self.world_corners(&hit) else {
+                others[other_count] = i as u32;
+                other_count += 1;
+                continue;
+            };
+            for (of_batch, position) in positions.iter_mut().zip(corners.positions()) {
+                of_batch.set(i, position);
             }
-            others[other_count] = i as u32;
-            other_count += usize::from(!is_flat);
+            if let Some(of_corners) = corners.normals() {
+                for (of_batch, normal) in normals.iter_mut().zip(of_corners) {
+                    of_batch.set(i, normal);
+                }
+                (is_smooth[i], any_smooth) = (1, true);
+            }
         }
         for i in 0..count {
             let positions = [positions[0].get(i), positions[1].get(i), positions[2].get(i)];
             surfaces.set(i, &Located::on_flat_triangle(positions, hits.b1[i], hits.b2[i]).surface());
         }
+        if any_smooth {
+            for i in 0..count {
+                let normals = [normals[0].get(i), normals[1].get(i), normals[2].get(i)];
+                let smooth = interpolated_normal(normals, hits.b1[i], hits.b2[i]);
+                let is_smooth = BVec3::splat(is_smooth[i] != 0 && smooth != Vec3::ZERO);
+                surfaces.ns.set(i, Vec3::select(is_smooth, smooth, surfaces.ng.get(i)));
+            }
+        }
         for &i in &others[..other_count] {
             let i = i as usize;
-            let Some(hit) = hits.get(i) else { continue };
-            match self.world_corners(&hit) {
-                Some(corners) => {
-                    if let Some(ns) = corners.shading_normal(hit.b1, hit.b2) {
-                        surfaces.ns.set(i, ns);
-                    }
-                }
-                None => surfaces.set(i, &self.surface_of_other(&rays.get(i), &hit)),
+            if let Some(hit) = hits.get(i) {
+                surfaces.set(i, &self.surface_of_other(&rays.get(i), &hit));
             }
         }
     }

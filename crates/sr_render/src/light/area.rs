@@ -99,12 +99,20 @@ pub(super) struct Patch {
     pub is_triangle: bool,
 }
 
-/// A point of a [`Patch`], seen from another point.
-pub(super) struct PatchSample {
+/// A piece of a light that can be sampled without a branch.
+pub(super) enum Piece {
+    /// With the density of its points, in the inverse of a square unit of length.
+    Patch(Patch, f32),
+    /// A sphere that is seen from outside.
+    Ball { center: Vec3, radius: f32 },
+}
+
+/// A point of a light, seen from another point.
+pub(super) struct Seen {
     pub p: Vec3,
     /// Direction to it.
     pub wi: Vec3,
-    /// Density in sr⁻¹; 0 if the piece shines the other way.
+    /// Density in sr⁻¹; 0 if nothing is seen.
     pub pdf: f32,
 }
 
@@ -118,7 +126,7 @@ impl Patch {
 
     /// Draws a point, with density `pdf_area` per square unit of length. Does not branch.
     #[inline(always)]
-    pub fn sample(&self, pdf_area: f32, from: Vec3, u: Vec2) -> PatchSample {
+    pub fn sample(&self, pdf_area: f32, from: Vec3, u: Vec2) -> Seen {
         let at = Self::coordinates(self.is_triangle, u);
         let p = self.corner + at.x * self.edges[0] + at.y * self.edges[1];
         let to_light = p - from;
@@ -128,7 +136,7 @@ impl Patch {
         let pdf = to_solid_angle(pdf_area, distance_squared, cos_light);
         // The cosine is no number where the points coincide.
         let pdf = if cos_light > 0.0 && pdf < f32::INFINITY { pdf } else { 0.0 };
-        PatchSample { p, wi, pdf }
+        Seen { p, wi, pdf }
     }
 }
 
@@ -200,17 +208,19 @@ impl AreaLight {
         matches!(self.form, Form::Mesh { .. })
     }
 
-    /// A flat piece, chosen by `u_pick`, and the density of its points; `None` for a light that is not flat, or whose
-    /// radiance depends on the point.
+    /// A piece, chosen by `u_pick`; `None` for a light of another form, or whose radiance depends on the point.
     #[inline(always)]
-    pub(super) fn patch(&self, u_pick: f32) -> Option<(Patch, f32)> {
+    pub(super) fn piece(&self, u_pick: f32) -> Option<Piece> {
         let ColorInput::Constant(_) = self.radiance else { return None };
         let patch = match &self.form {
             Form::Mesh { triangles, by_area } => triangles[by_area.sample_and_reuse(u_pick).0.value].patch(),
             Form::Parallelogram(q) => q.patch(),
+            &Form::Sphere { center, radius, inwards: false, .. } => {
+                return Some(Piece::Ball { center, radius });
+            }
             Form::Sphere { .. } | Form::Disk { .. } => return None,
         };
-        Some((patch, 1.0 / self.area))
+        Some(Piece::Patch(patch, 1.0 / self.area))
     }
 
     /// Draws a direction from `from` to the light. `u_pick` chooses a triangle, `u` a point.
@@ -234,8 +244,9 @@ impl AreaLight {
             }
             Form::Sphere { center, radius, inwards, .. } => {
                 let sample = if *inwards { sphere::sample_area } else { sphere::sample_cone };
-                let (p, wi, pdf) = sample(*center, *radius, from, u)?;
-                return Some(LightSample { wi, pdf, target: Target::Point(p), light, uv: Vec2::ZERO });
+                let Seen { p, wi, pdf } = sample(*center, *radius, from, u);
+                let sample = LightSample { wi, pdf, target: Target::Point(p), light, uv: Vec2::ZERO };
+                return (pdf > 0.0).then_some(sample);
             }
         };
         let s = patch.sample(1.0 / self.area, from, u);
@@ -279,46 +290,45 @@ fn disk_uv(d: Vec2) -> Vec2 {
 }
 
 /// Sampling a sphere from a point.
-mod sphere {
-    use super::{PI, Vec2, Vec3, to_solid_angle};
-    use sr_sampling::Distribution;
+pub(super) mod sphere {
+    use super::{PI, Seen, Vec2, Vec3, to_solid_angle};
     use sr_sampling::warp::{UniformCone, UniformSphere};
+    use sr_sampling::{Distribution, Sample};
 
-    /// The cone of directions from `from` that meet the sphere; `None` from inside.
-    fn cone(center: Vec3, radius: f32, from: Vec3) -> Option<UniformCone> {
-        UniformCone::from_sin2(radius * radius / (center - from).length_squared()).ok()
-    }
-
+    /// The density of [`sample_cone`], in sr⁻¹; 0 from inside.
     pub(super) fn cone_pdf(center: Vec3, radius: f32, from: Vec3) -> f32 {
-        cone(center, radius, from).map_or(0.0, |cone| 1.0 / cone.solid_angle())
+        let sin2 = radius * radius / (center - from).length_squared();
+        UniformCone::from_sin2(sin2).map_or(0.0, |cone| 1.0 / cone.solid_angle())
     }
 
-    /// A point of the visible cap, the direction to it and its density.
-    pub(super) fn sample_cone(center: Vec3, radius: f32, from: Vec3, u: Vec2) -> Option<(Vec3, Vec3, f32)> {
+    /// A point of the visible cap, if there is one: nothing is seen from inside. Does not branch.
+    #[inline(always)]
+    pub(in super::super) fn sample_cone(center: Vec3, radius: f32, from: Vec3, u: Vec2) -> Seen {
         let axis = center - from;
-        let distance = axis.length();
-        let z = axis / distance;
+        let distance_squared = axis.length_squared();
+        let z = axis / distance_squared.sqrt();
         let (x, y) = z.any_orthonormal_pair();
-        let s = cone(center, radius, from)?.sample(u)?;
-        let wi = (x * s.value.x + y * s.value.y + z * s.value.z).normalize();
+        let drawn =
+            UniformCone::from_sin2(radius * radius / distance_squared).ok().and_then(|cone| cone.sample(u));
+        let Sample { value, pdf } = drawn.unwrap_or(Sample { value: Vec3::Z, pdf: 0.0 });
+        let wi = (x * value.x + y * value.y + z * value.z).normalize();
         // the nearer intersection, from the closest approach to the centre
         let along = axis.dot(wi);
         let miss_squared = (axis - along * wi).length_squared();
         let half_chord = (radius * radius - miss_squared).max(0.0).sqrt();
         let offset = wi * (along - half_chord) - axis;
-        let p = center + offset * (radius / offset.length());
-        Some((p, wi, s.pdf))
+        Seen { p: center + offset * (radius / offset.length()), wi, pdf }
     }
 
     /// A point of the whole sphere whose inside is seen.
-    pub(super) fn sample_area(center: Vec3, radius: f32, from: Vec3, u: Vec2) -> Option<(Vec3, Vec3, f32)> {
-        let normal = UniformSphere.sample(u)?.value;
+    pub(super) fn sample_area(center: Vec3, radius: f32, from: Vec3, u: Vec2) -> Seen {
+        let normal = UniformSphere.sample(u).map_or(Vec3::Z, |s| s.value);
         let p = center + radius * normal;
         let to_light = p - from;
         let distance_squared = to_light.length_squared();
         let wi = to_light / distance_squared.sqrt();
         let pdf = to_solid_angle(1.0 / (4.0 * PI * radius * radius), distance_squared, normal.dot(wi));
-        (normal.dot(wi) > 0.0 && pdf.is_finite()).then_some((p, wi, pdf))
+        Seen { p, wi, pdf: if normal.dot(wi) > 0.0 && pdf.is_finite() { pdf } else { 0.0 } }
     }
 
     /// (φ / 2π, θ / π) in the sphere's frame.

@@ -1,12 +1,12 @@
 //! Directions to lights from many points at a time.
 //!
-//! Flat pieces of lights (a parallelogram, or a triangle of a mesh) are chosen one by one, and sampled all together.
+//! Pieces of lights (parallelograms, triangles of meshes, spheres) are chosen one by one, and sampled all together.
 
-use glam::{Vec2, Vec3};
+use glam::{BVec3, Vec2, Vec3};
 use sr_geometry::{BATCH, Vec2s, Vec3s};
 use sr_scene::Rgb;
 
-use super::area::Patch;
+use super::area::{Patch, Piece, sphere};
 use super::{DeltaSample, LightId, LightSample, Lights, Target};
 
 /// [`LightSample`]s from the points of a batch.
@@ -21,8 +21,10 @@ pub(crate) struct LightSamples {
     pub t_end: [f32; BATCH],
     light: [u32; BATCH],
     uv: Vec2s,
-    /// What the samples are drawn from.
-    patches: Patches,
+    /// What samples are drawn from together.
+    pieces: Pieces,
+    /// Those that are drawn one by one.
+    others: [u32; BATCH],
 }
 
 impl LightSamples {
@@ -33,7 +35,8 @@ impl LightSamples {
         t_end: [1.0; BATCH],
         light: [0; BATCH],
         uv: Vec2s::splat(Vec2::ZERO),
-        patches: Patches::NONE,
+        pieces: Pieces::NONE,
+        others: [0; BATCH],
     };
 
     /// The sample from point `i`. There must be one.
@@ -101,31 +104,34 @@ fn set_target(targets: &mut Vec3s, t_end: &mut [f32; BATCH], i: usize, target: T
     }
 }
 
-/// Flat pieces of lights, one for each point of a batch.
-struct Patches {
+/// Pieces of lights, one for each point of a batch.
+struct Pieces {
+    /// A flat piece's corner, or the centre of a ball.
     corner: Vec3s,
     edges: [Vec3s; 2],
     normal: Vec3s,
     /// 1 for a triangle, 0 for a parallelogram.
     is_triangle: [u32; BATCH],
-    /// The density of choosing a point of it, choices among pieces and lights included, in the inverse of a square
-    /// unit of length.
-    pdf_area: [f32; BATCH],
+    /// Of a ball; 0 for a flat piece.
+    radius: [f32; BATCH],
+    /// What the density of choosing a point of it is multiplied by. Of a flat piece, it has the inverse area in it.
+    factor: [f32; BATCH],
     light: [u32; BATCH],
 }
 
-impl Patches {
+impl Pieces {
     const NONE: Self = Self {
         corner: Vec3s::splat(Vec3::ZERO),
         edges: [const { Vec3s::splat(Vec3::ZERO) }; 2],
         normal: Vec3s::splat(Vec3::Z),
         is_triangle: [0; BATCH],
-        pdf_area: [0.0; BATCH],
+        radius: [0.0; BATCH],
+        factor: [0.0; BATCH],
         light: [0; BATCH],
     };
 
     #[inline(always)]
-    fn get(&self, i: usize) -> Patch {
+    fn patch(&self, i: usize) -> Patch {
         Patch {
             corner: self.corner.get(i),
             edges: [self.edges[0].get(i), self.edges[1].get(i)],
@@ -135,14 +141,24 @@ impl Patches {
     }
 
     #[inline(always)]
-    fn set(&mut self, i: usize, patch: &Patch, pdf_area: f32, light: LightId) {
-        self.corner.set(i, patch.corner);
-        self.edges[0].set(i, patch.edges[0]);
-        self.edges[1].set(i, patch.edges[1]);
-        self.normal.set(i, patch.normal);
-        self.is_triangle[i] = u32::from(patch.is_triangle);
-        self.pdf_area[i] = pdf_area;
+    fn set(&mut self, i: usize, piece: &Piece, pmf: f32, light: LightId) {
         self.light[i] = light.0;
+        match piece {
+            Piece::Patch(patch, pdf_area) => {
+                self.corner.set(i, patch.corner);
+                self.edges[0].set(i, patch.edges[0]);
+                self.edges[1].set(i, patch.edges[1]);
+                self.normal.set(i, patch.normal);
+                self.is_triangle[i] = u32::from(patch.is_triangle);
+                self.radius[i] = 0.0;
+                self.factor[i] = pmf * pdf_area;
+            }
+            Piece::Ball { center, radius } => {
+                self.corner.set(i, *center);
+                self.radius[i] = *radius;
+                self.factor[i] = pmf;
+            }
+        }
     }
 }
 
@@ -157,29 +173,40 @@ impl Lights {
         samples: &mut LightSamples,
     ) {
         let count = count.min(BATCH);
-        let (mut others, mut other_count) = ([0_u32; BATCH], 0);
+        let LightSamples { wi, pdf, target, t_end, light, pieces, others, .. } = samples;
+        let (mut balls, mut other_count) = (0, 0);
         for i in 0..count {
-            let mut is_flat = false;
+            let mut is_piece = false;
             if let Some((id, pmf, rest)) = self.pick(u_pick[i])
-                && let Some((patch, pdf_area)) = self.patch(id, rest)
+                && let Some(piece) = self.piece(id, rest)
             {
-                samples.patches.set(i, &patch, pmf * pdf_area, id);
-                is_flat = true;
+                balls += usize::from(matches!(piece, Piece::Ball { .. }));
+                pieces.set(i, &piece, pmf, id);
+                is_piece = true;
             }
             others[other_count % BATCH] = i as u32;
-            other_count += usize::from(!is_flat);
+            other_count += usize::from(!is_piece);
         }
         for i in 0..count {
-            let patches = &samples.patches;
-            let s = patches.get(i).sample(patches.pdf_area[i], from.get(i), u.get(i));
-            samples.wi.set(i, s.wi);
-            samples.pdf[i] = s.pdf;
-            samples.target.set(i, s.p);
-            samples.t_end[i] = 1.0;
-            samples.light[i] = samples.patches.light[i];
+            let seen = pieces.patch(i).sample(pieces.factor[i], from.get(i), u.get(i));
+            wi.set(i, seen.wi);
+            pdf[i] = seen.pdf;
+            target.set(i, seen.p);
+            t_end[i] = 1.0;
+            light[i] = pieces.light[i];
         }
-        for &i in &others[..other_count] {
-            let i = i as usize % BATCH;
+        if balls > 0 {
+            for i in 0..count {
+                let (center, radius) = (pieces.corner.get(i), pieces.radius[i]);
+                let seen = sphere::sample_cone(center, radius, from.get(i), u.get(i));
+                let is_ball = radius > 0.0;
+                wi.set(i, Vec3::select(BVec3::splat(is_ball), seen.wi, wi.get(i)));
+                pdf[i] = if is_ball { seen.pdf * pieces.factor[i] } else { pdf[i] };
+                target.set(i, Vec3::select(BVec3::splat(is_ball), seen.p, target.get(i)));
+            }
+        }
+        for k in 0..other_count.min(BATCH) {
+            let i = samples.others[k] as usize % BATCH;
             samples.set(i, self.sample(from.get(i), u_pick[i], u.get(i)).as_ref());
         }
     }

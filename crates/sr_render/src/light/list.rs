@@ -5,7 +5,7 @@ use sr_geometry::{Geometry, ShapeId, Surface};
 use sr_sampling::{AliasTable, power_weight};
 use sr_scene::Rgb;
 
-use super::area::Patch;
+use super::area::Piece;
 use super::{
     AreaLight, ConstantEnvironment, DeltaSample, DirectionalLight, Environment, LightSample, PointLight,
     SeenFrom, SpotLight,
@@ -151,11 +151,11 @@ impl Lights {
         Some((LightId(index as u32), pmf, rest))
     }
 
-    /// A flat piece of a light that shines alike everywhere, and the density of its points; `None` for other lights.
+    /// A piece of a light that shines alike everywhere; `None` for other lights.
     #[inline(always)]
-    pub(super) fn patch(&self, id: LightId, u_pick: f32) -> Option<(Patch, f32)> {
+    pub(super) fn piece(&self, id: LightId, u_pick: f32) -> Option<Piece> {
         match &self.extended[id.0 as usize] {
-            Extended::Area(area) => area.patch(u_pick),
+            Extended::Area(area) => area.piece(u_pick),
             Extended::Constant(_) | Extended::Environment(_) => None,
         }
     }
