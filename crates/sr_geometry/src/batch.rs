@@ -165,6 +165,9 @@ pub struct Surfaces {
     pub ng: Vec3s,
     /// Shading normals.
     pub ns: Vec3s,
+    /// The triangles that the points are on: positions and normals of their corners.
+    pub(crate) corners: [Vec3s; 3],
+    pub(crate) normals: [Vec3s; 3],
 }
 
 impl Surfaces {
@@ -174,6 +177,8 @@ impl Surfaces {
         clearance: [0.0; BATCH],
         ng: Vec3s::splat(Vec3::Z),
         ns: Vec3s::splat(Vec3::Z),
+        corners: [const { Vec3s::splat(Vec3::ZERO) }; 3],
+        normals: [const { Vec3s::splat(Vec3::ZERO) }; 3],
     };
 
     /// One of them, with the texture coordinates that [`Geometry::uv`] knows.

@@ -4,7 +4,7 @@ use glam::{BVec3, Vec2, Vec3};
 
 use crate::geometry::Corners;
 use crate::offset::{ROUNDING, clearance};
-use crate::{BATCH, Geometry, Hit, Hits, NO_INSTANCE, Ray, Rays, ShapeId, ShapeRef, Surfaces, Vec3s};
+use crate::{BATCH, Geometry, Hit, Hits, NO_INSTANCE, Ray, Rays, ShapeId, ShapeRef, Surfaces};
 
 /// A point on a surface, in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -163,8 +163,6 @@ impl Geometry {
     #[inline(always)]
     pub fn surfaces(&self, rays: &Rays, hits: &Hits, count: usize, surfaces: &mut Surfaces) {
         let count = count.min(BATCH);
-        let mut positions = [const { Vec3s::splat(Vec3::ZERO) }; 3];
-        let mut normals = [const { Vec3s::splat(Vec3::ZERO) }; 3];
         let (mut is_smooth, mut any_smooth) = ([0_u32; BATCH], false);
         // Those that are no triangles in world space.
         let (mut others, mut other_count) = ([0_u32; BATCH], 0);
@@ -175,23 +173,25 @@ impl Geometry {
                 other_count += 1;
                 continue;
             };
-            for (of_batch, position) in positions.iter_mut().zip(corners.positions()) {
+            for (of_batch, position) in surfaces.corners.iter_mut().zip(corners.positions()) {
                 of_batch.set(i, position);
             }
             if let Some(of_corners) = corners.normals() {
-                for (of_batch, normal) in normals.iter_mut().zip(of_corners) {
+                for (of_batch, normal) in surfaces.normals.iter_mut().zip(of_corners) {
                     of_batch.set(i, normal);
                 }
                 (is_smooth[i], any_smooth) = (1, true);
             }
         }
         for i in 0..count {
-            let positions = [positions[0].get(i), positions[1].get(i), positions[2].get(i)];
-            surfaces.set(i, &Located::on_flat_triangle(positions, hits.b1[i], hits.b2[i]).surface());
+            let [p0, p1, p2] = &surfaces.corners;
+            let corners = [p0.get(i), p1.get(i), p2.get(i)];
+            surfaces.set(i, &Located::on_flat_triangle(corners, hits.b1[i], hits.b2[i]).surface());
         }
         if any_smooth {
             for i in 0..count {
-                let normals = [normals[0].get(i), normals[1].get(i), normals[2].get(i)];
+                let [n0, n1, n2] = &surfaces.normals;
+                let normals = [n0.get(i), n1.get(i), n2.get(i)];
                 let smooth = interpolated_normal(normals, hits.b1[i], hits.b2[i]);
                 let is_smooth = BVec3::splat(is_smooth[i] != 0 && smooth != Vec3::ZERO);
                 surfaces.ns.set(i, Vec3::select(is_smooth, smooth, surfaces.ng.get(i)));

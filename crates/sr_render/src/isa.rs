@@ -25,28 +25,34 @@ pub(crate) trait Work {
 impl Isa {
     /// The best that this processor has.
     pub fn detect() -> Self {
-        #[cfg(target_arch = "x86_64")]
-        {
-            let avx2 = is_x86_feature_detected!("avx2")
-                && is_x86_feature_detected!("fma")
-                && is_x86_feature_detected!("bmi1")
-                && is_x86_feature_detected!("bmi2")
-                && is_x86_feature_detected!("lzcnt");
-            let avx512 = is_x86_feature_detected!("avx512f")
-                && is_x86_feature_detected!("avx512vl")
-                && is_x86_feature_detected!("avx512dq")
-                && is_x86_feature_detected!("avx512bw");
-            if avx2 && avx512 {
-                return Self::Avx512;
-            }
-            if avx2 {
-                return Self::Avx2;
-            }
-        }
-        Self::Baseline
+        Self::available().next().unwrap_or(Self::Baseline)
     }
 
-    /// Runs `work`. An `Isa` comes from [`Isa::detect`] alone, so the processor has it.
+    /// Those that this processor has, best first.
+    pub fn available() -> impl Iterator<Item = Self> {
+        #[cfg(target_arch = "x86_64")]
+        let avx2 = is_x86_feature_detected!("avx2")
+            && is_x86_feature_detected!("fma")
+            && is_x86_feature_detected!("bmi1")
+            && is_x86_feature_detected!("bmi2")
+            && is_x86_feature_detected!("lzcnt");
+        #[cfg(target_arch = "x86_64")]
+        let avx512 = avx2
+            && is_x86_feature_detected!("avx512f")
+            && is_x86_feature_detected!("avx512vl")
+            && is_x86_feature_detected!("avx512dq")
+            && is_x86_feature_detected!("avx512bw");
+        let all = [
+            #[cfg(target_arch = "x86_64")]
+            avx512.then_some(Self::Avx512),
+            #[cfg(target_arch = "x86_64")]
+            avx2.then_some(Self::Avx2),
+            Some(Self::Baseline),
+        ];
+        all.into_iter().flatten()
+    }
+
+    /// Runs `work`. Values other than the baseline come from [`Isa::available`] alone, so the processor has them.
     pub fn run<W: Work>(self, work: W) -> W::Out {
         match self {
             // SAFETY: the features were detected.

@@ -14,6 +14,8 @@ mod isa;
 pub mod light;
 pub mod material;
 pub mod output;
+mod pairwise;
+mod pass;
 pub mod render;
 pub mod scene;
 pub mod strategy;

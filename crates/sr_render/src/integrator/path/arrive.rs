@@ -1,9 +1,9 @@
 //! Paths come to surfaces: what shines there is added, and the scattering models are found.
 
 use glam::Vec3;
-use sr_geometry::{BATCH, Hit, ShapeId};
+use sr_geometry::{BATCH, Hit};
 use sr_sampling::{Sequence, power_weight};
-use sr_scene::Rgb;
+use sr_scene::{ColorInput, Rgb};
 
 use super::super::PathSample;
 use super::Step;
@@ -70,22 +70,20 @@ pub(super) fn find_models<Q: Sequence>(scene: &Scene, paths: &Paths<Q>, at: &mut
     let mut turn = [1.0; BATCH];
     at.others.clear();
     for i in 0..count {
-        let is_hit = at.hits.t[i] < f32::INFINITY;
-        // A ray that hits nothing may ask for the model of whatever was hit before it.
-        let material = scene.materials.get(scene.material_of(ShapeId(at.hits.shape[i])));
-        let seen = material.lambert(facing[i] < 0.0);
-        if let Some((color, turned)) = seen {
-            let albedo = match color {
-                sr_scene::ColorInput::Constant(albedo) => albedo,
-                textured => match at.hits.get(i) {
-                    Some(hit) => scene.textures.color(textured, scene.geometry.uv(&paths.rays.get(i), &hit)),
-                    None => Rgb::ZERO,
-                },
+        let Some(hit) = at.hits.get(i) else { continue };
+        let seen = scene.materials.get(scene.material_of(hit.shape)).lambert(facing[i] < 0.0);
+        if let Some((reflectance, turned)) = seen {
+            let albedo = match reflectance {
+                ColorInput::Constant(albedo) => albedo,
+                textured => {
+                    let uv = scene.geometry.uv(&paths.rays.get(i), &hit);
+                    scene.textures.color(textured, uv)
+                }
             };
             at.albedo.set(i, albedo);
             turn[i] = if turned { -1.0 } else { 1.0 };
         }
-        at.others.push_if(is_hit && seen.is_none(), i);
+        at.others.push_if(seen.is_none(), i);
     }
     for i in 0..count {
         let ns: Vec3 = at.surfaces.ns.get(i);
