@@ -16,29 +16,35 @@ pub(super) const MAX_DEPTH: usize = 36;
 /// Subtrees of more primitives than this are built in parallel.
 const PARALLEL: usize = 1 << 12;
 
-/// A leaf that fits one block is cut further only if the areas of its parts sum to less than this of its own.
+/// What fits a leaf is cut further only if the areas of its parts sum to less than this of its own.
 const WORTH_CUTTING: f32 = 0.9;
 
-/// A tree whose blocks are still ranges of the primitives.
+/// A tree whose leaves are still ranges of the primitives.
 pub(super) struct BuiltTree {
     pub root: NodeRef,
     pub nodes: Vec<Node>,
     pub leaves: Vec<Range<usize>>,
+    triangles: usize,
 }
 
 impl BuiltTree {
-    /// Makes its references those after `nodes` and `blocks` earlier ones.
-    pub fn shift(&mut self, nodes: usize, blocks: usize) {
+    fn new() -> Self {
+        Self { root: NodeRef::NONE, nodes: Vec::new(), leaves: Vec::new(), triangles: 0 }
+    }
+
+    /// Makes its references those after `nodes` and `triangles` earlier ones.
+    pub fn shift(&mut self, nodes: usize, triangles: usize) {
         let children = self.nodes.iter_mut().flat_map(|node| &mut node.children);
         for child in children.chain([&mut self.root]) {
-            *child = child.shifted(nodes, blocks);
+            *child = child.shifted(nodes, triangles);
         }
     }
 
     fn append(&mut self, mut subtree: Self) -> NodeRef {
-        subtree.shift(self.nodes.len(), self.leaves.len());
+        subtree.shift(self.nodes.len(), self.triangles);
         self.nodes.append(&mut subtree.nodes);
         self.leaves.append(&mut subtree.leaves);
+        self.triangles += subtree.triangles;
         subtree.root
     }
 }
@@ -60,12 +66,10 @@ impl Part {
 /// Builds the tree over at least one primitive, reordering `prims`. The result does not depend on the number of threads.
 /// Its root is a node.
 pub(super) fn build(prims: &mut [PrimRef]) -> BuiltTree {
-    let mut tree = BuiltTree { root: NodeRef::NONE, nodes: Vec::new(), leaves: Vec::new() };
+    let mut tree = BuiltTree::new();
     tree.root = build_subtree(prims, 0, 1, &mut tree);
     if !tree.root.is_node() {
-        let mut root = Node::empty();
-        root.set_child(0, &Extent::of(prims).bounds, tree.root);
-        tree.nodes.push(root);
+        tree.nodes.push(Node::new([(Extent::of(prims).bounds, tree.root)].into_iter()));
         tree.root = NodeRef::node(0);
     }
     tree
@@ -83,15 +87,16 @@ fn build_subtree(prims: &mut [PrimRef], first: usize, depth: usize, tree: &mut B
             return NodeRef::other(prims[0].primitive);
         }
         tree.leaves.push(first..first + prims.len());
-        return NodeRef::block(tree.leaves.len() - 1);
+        tree.triangles += prims.len();
+        // After the triangle that is in no leaf.
+        return NodeRef::leaf(1 + tree.triangles - prims.len(), prims.len());
     }
     let parts = cut(prims, depth);
     let index = tree.nodes.len();
-    tree.nodes.push(Node::empty());
+    tree.nodes.push(Node::EMPTY);
     let children = build_children(prims, &parts, first, depth, tree);
-    for (slot, (part, child)) in parts.iter().zip(children).enumerate() {
-        tree.nodes[index].set_child(slot, &part.extent.bounds, child);
-    }
+    let bounds = parts.iter().map(|part| part.extent.bounds);
+    tree.nodes[index] = Node::new(bounds.zip(children.iter().copied()));
     NodeRef::node(index)
 }
 
@@ -118,7 +123,7 @@ fn build_children(
         rest = tail;
     }
     let build = |(slice, first)| {
-        let mut subtree = BuiltTree { root: NodeRef::NONE, nodes: Vec::new(), leaves: Vec::new() };
+        let mut subtree = BuiltTree::new();
         subtree.root = build_subtree(slice, first, depth + 1, &mut subtree);
         subtree
     };

@@ -1,14 +1,14 @@
 //! Walking a large tree with several rays in turn: the memory that one of them waits for arrives while the others move.
 //!
 //! In: rays and the root of a tree. Out: what [`super::traverse`] would find for each of them, in any order. Every walk
-//! makes one visit, to a node or to a block, chooses and prefetches what it visits next, and gives way.
+//! makes one visit, to a node or to a leaf, chooses and prefetches what it visits next, and gives way.
 
 use std::mem::MaybeUninit;
 
 use super::sheared::Sheared;
 use super::simd::{LANE, Simd};
 use super::slabs::Slabs;
-use super::traverse::{Waiting, meet_block, meets_nothing};
+use super::traverse::{Waiting, meet_leaf, meets_nothing};
 use super::{Bvh, MAX_DEPTH, NodeRef};
 use crate::{Bounds3, Hit, Ray, Rays};
 
@@ -89,9 +89,9 @@ impl<'a, S: Simd> Walk<'a, S> {
             self.depth += 1;
             self.now = Waiting::at(simd, &self.slabs, bvh.node(child), self.t_max);
             false
-        } else if child.is_block() {
-            let at = (&self.ray, bvh.block(child));
-            meet_block::<_, ANY>(simd, &self.sheared, at, self.t_max, &mut self.closest)
+        } else if child.is_leaf() {
+            let at = (&self.ray, &bvh.leaves.leaf(child));
+            meet_leaf::<_, ANY>(simd, &self.sheared, at, self.t_max, &mut self.closest)
         } else {
             let hit = meet_other(child.index() as u32, &Ray { t_max: self.closest.t, ..self.ray });
             self.closest = hit.unwrap_or(self.closest);
@@ -103,6 +103,7 @@ impl<'a, S: Simd> Walk<'a, S> {
                 return false;
             }
             self.t_max = simd.splat(self.closest.t);
+            bvh.leaves.prefetch_name(simd, &self.closest);
         }
         self.choose(simd, bvh, stack)
     }
@@ -170,6 +171,7 @@ pub(super) fn walk_many<S: Simd, const ANY: bool>(
             if walk.step::<ANY>(simd, bvh, stack, meet_other) {
                 continue;
             }
+            bvh.leaves.name(&mut walk.closest);
             answer(walk.index, walk.any.then_some(&walk.closest));
             if !queue.start(simd, bvh, (walk, stack), &mut answer) {
                 running -= 1;

@@ -1,9 +1,9 @@
 //! One 8-wide bounding volume hierarchy for triangles, spheres, disks and instances.
 //!
-//! In: [`PrimRef`]s, a box and an identity each. Out: [`Bvh`], flat arrays of nodes and of blocks of up to eight
+//! In: [`PrimRef`]s, a box and an identity each. Out: [`Bvh`], flat arrays of nodes and of leaves of up to eight
 //! triangles, and a [`Tree`] per call. `build` decides the tree, `traverse` walks it, `interleave` does so with several
-//! rays in turn, `scan` meets the triangles of trees that are not worth a node; `dispatch` chooses the instruction set. Several trees (the world's and the
-//! groups') share the arrays.
+//! rays in turn, `scan` meets the triangles of trees that are not worth a node; `dispatch` chooses the instruction set.
+//! Several trees (the world's and the groups') share the arrays.
 //!
 //! Invariant: every tree is at most [`MAX_DEPTH`] nodes deep, so the traversal stack cannot overflow.
 
@@ -11,6 +11,8 @@ mod batch;
 mod build;
 mod dispatch;
 mod interleave;
+mod leaves;
+mod node;
 mod packet;
 mod pages;
 mod pieces;
@@ -30,9 +32,12 @@ use crate::{Bounds3, Hit, NO_INSTANCE, ShapeId};
 use simd::Kernel;
 
 use build::MAX_DEPTH;
+use leaves::Leaves;
+pub(crate) use node::MAX_INDEX;
+use node::{Node, NodeRef};
 use pieces::Pieces;
 
-/// Children of a node, and triangles of a block.
+/// Children of a node, and the most triangles of a leaf.
 pub(crate) const WIDTH: usize = 8;
 
 /// Triangles of a block that is scanned.
@@ -41,10 +46,7 @@ const WIDE: usize = 16;
 /// Up to this many triangles get no tree: meeting all of them is faster (see docs/performance.md).
 const FEW: usize = 64;
 
-/// The largest number of nodes, of blocks or of other primitives that a [`NodeRef`] can tell apart.
-pub(crate) const MAX_INDEX: usize = (1 << 30) - 1;
-
-/// Bytes of nodes and blocks from which traversal prefetches: what a second-level cache surely does not hold.
+/// Bytes of nodes and leaves from which traversal prefetches: what a second-level cache surely does not hold.
 const PREFETCH_FROM: usize = 1 << 20;
 
 /// What the builder sees of a primitive.
@@ -63,83 +65,6 @@ impl PrimRef {
 
     fn is_triangle(&self) -> bool {
         self.shape != Self::OTHER
-    }
-}
-
-/// A child: a node, a block of triangles, one other primitive, or nothing. Kind in the upper two bits.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct NodeRef(u32);
-
-impl NodeRef {
-    /// No child, or a tree without primitives.
-    pub const NONE: Self = Self(u32::MAX);
-    const KIND: u32 = 3 << 30;
-    const BLOCK: u32 = 1 << 30;
-    const OTHER: u32 = 2 << 30;
-
-    fn node(index: usize) -> Self {
-        Self(index as u32)
-    }
-
-    fn block(index: usize) -> Self {
-        Self(index as u32 | Self::BLOCK)
-    }
-
-    fn other(index: u32) -> Self {
-        Self(index | Self::OTHER)
-    }
-
-    /// The same child where `nodes` and `blocks` precede its own.
-    fn shifted(self, nodes: usize, blocks: usize) -> Self {
-        if self.is_node() {
-            Self::node(self.index() + nodes)
-        } else if self.is_block() {
-            Self::block(self.index() + blocks)
-        } else {
-            self
-        }
-    }
-
-    #[inline(always)]
-    fn is_node(self) -> bool {
-        self.0 < Self::BLOCK
-    }
-
-    #[inline(always)]
-    fn is_block(self) -> bool {
-        self.0 & Self::KIND == Self::BLOCK
-    }
-
-    #[inline(always)]
-    fn index(self) -> usize {
-        (self.0 & !Self::KIND) as usize
-    }
-}
-
-/// Boxes of eight children, and the children. A missing child has the empty box.
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(64))]
-pub(crate) struct Node {
-    /// Rows: the smallest and the largest coordinates of x, of y, of z.
-    bounds: [[f32; WIDTH]; 6],
-    children: [NodeRef; WIDTH],
-}
-
-impl Node {
-    fn empty() -> Self {
-        let bounds = std::array::from_fn(|row| match row % 2 {
-            0 => [f32::INFINITY; WIDTH],
-            _ => [f32::NEG_INFINITY; WIDTH],
-        });
-        Self { bounds, children: [NodeRef::NONE; WIDTH] }
-    }
-
-    fn set_child(&mut self, slot: usize, bounds: &Bounds3, child: NodeRef) {
-        for axis in 0..3 {
-            self.bounds[2 * axis][slot] = bounds.min[axis];
-            self.bounds[2 * axis + 1][slot] = bounds.max[axis];
-        }
-        self.children[slot] = child;
     }
 }
 
@@ -209,7 +134,7 @@ impl Tree {
 #[derive(Debug)]
 pub(crate) struct Bvh {
     nodes: Vec<Node>,
-    blocks: Vec<TriangleBlock<WIDTH>>,
+    leaves: Leaves,
     few: Vec<TriangleBlock<WIDE>>,
     pieces: Vec<Pieces>,
     kernel: Kernel,
@@ -222,7 +147,7 @@ impl Bvh {
         let kernel = Kernel::detect();
         Self {
             nodes: Vec::new(),
-            blocks: Vec::new(),
+            leaves: Leaves::new(),
             few: Vec::new(),
             pieces: Vec::new(),
             kernel,
@@ -248,24 +173,20 @@ impl Bvh {
             self.few.extend(prims.chunks(WIDE).map(|prims| TriangleBlock::new(prims, &vertices_of)));
             return Tree { form, bounds };
         }
-        let (first_node, first_block) = (self.nodes.len(), self.blocks.len());
+        let (nodes, triangles) = (self.nodes.len(), self.leaves.count());
         let mut tree = build::build(prims);
-        tree.shift(first_node, first_block);
+        tree.shift(nodes, triangles);
         pages::reserve(&mut self.nodes, tree.nodes.len());
         self.nodes.append(&mut tree.nodes);
-        let prims = &*prims;
-        let blocks =
-            tree.leaves.par_iter().map(|leaf| TriangleBlock::new(&prims[leaf.clone()], &vertices_of));
-        pages::reserve(&mut self.blocks, tree.leaves.len());
-        self.blocks.par_extend(blocks);
+        self.leaves.append(&tree.leaves, prims, vertices_of);
         self.prefetches = self.memory_bytes() > PREFETCH_FROM;
         Tree { form: Form::Nodes(tree.root), bounds }
     }
 
-    /// Bytes of nodes and blocks.
+    /// Bytes of nodes and triangles.
     pub fn memory_bytes(&self) -> usize {
         size_of_val(&self.nodes[..])
-            + size_of_val(&self.blocks[..])
+            + self.leaves.memory_bytes()
             + size_of_val(&self.few[..])
             + self.pieces.iter().map(Pieces::memory_bytes).sum::<usize>()
     }

@@ -2,7 +2,8 @@
 
 use glam::Vec3;
 
-use super::simd::Kernel;
+use super::sheared::Triangles;
+use super::simd::{Kernel, Portable};
 use super::{Bvh, FEW, Form, MAX_DEPTH, NodeRef, PrimRef, Tree, WIDE};
 use crate::{BATCH, Bounds3, Hit, Hits, Ray, Rays, ShapeId};
 
@@ -27,14 +28,12 @@ fn build(triangles: &[[Vec3; 3]]) -> (Bvh, Tree) {
 
 /// Checks that children lie in their boxes; returns the depth and every triangle found.
 fn visit(bvh: &Bvh, child: NodeRef, bounds: &Bounds3, found: &mut Vec<u32>) -> usize {
-    if child.is_block() {
-        let block = &bvh.blocks[child.index()];
-        for lane in 0..8 {
-            let vertex = |i: usize| Vec3::from_array(block.vertices[i].map(|axis| axis[lane]));
-            if vertex(0).is_finite() {
-                assert!((0..3).all(|i| bounds.with(vertex(i)) == *bounds));
-                found.push(block.primitive[lane]);
-            }
+    if child.is_leaf() {
+        let leaf = bvh.leaves.leaf(child);
+        for lane in 0..child.count() {
+            let vertices = Triangles::<Portable>::vertices(&leaf, lane);
+            assert!(vertices.iter().all(|&vertex| bounds.with(vertex) == *bounds));
+            found.push(bvh.leaves.id(child.first() + lane)[1]);
         }
         return 0;
     }

@@ -5,12 +5,13 @@
 
 use std::mem::MaybeUninit;
 
-use glam::{Vec3, Vec3A};
+use glam::Vec3A;
 
-use super::sheared::{Meets, Sheared, Triangles};
+use super::leaves::Leaf;
+use super::sheared::{Meets, Sheared};
 use super::simd::{LANE, Simd};
 use super::slabs::Slabs;
-use super::{Bvh, MAX_DEPTH, Node, NodeRef, TriangleBlock, WIDTH};
+use super::{Bvh, MAX_DEPTH, Node, NodeRef, WIDTH};
 use crate::{Bounds3, Hit, Ray};
 
 /// The children of a node that wait for their turn.
@@ -61,6 +62,7 @@ pub(super) fn walk<S: Simd, const ANY: bool>(
         // Distances are not negative, so their bits are in the order of their values.
         if key & !LANE > t_max_bits {
             if depth == 0 {
+                bvh.leaves.name(closest);
                 return any;
             }
             depth -= 1;
@@ -80,8 +82,8 @@ pub(super) fn walk<S: Simd, const ANY: bool>(
             }
             continue;
         }
-        let hit = if child.is_block() {
-            meet_block::<_, ANY>(simd, &sheared, (ray, bvh.block(child)), t_max, closest)
+        let hit = if child.is_leaf() {
+            meet_leaf::<_, ANY>(simd, &sheared, (ray, &bvh.leaves.leaf(child)), t_max, closest)
         } else {
             let hit = meet_other(child.index() as u32, &Ray { t_max: f32::from_bits(t_max_bits), ..*ray });
             *closest = hit.unwrap_or(*closest);
@@ -93,41 +95,37 @@ pub(super) fn walk<S: Simd, const ANY: bool>(
             }
             t_max = simd.splat(closest.t);
             t_max_bits = closest.t.to_bits();
+            bvh.leaves.prefetch_name(simd, closest);
             any = true;
         }
     }
 }
 
-/// Does the ray meet any triangle of a block before `t_max`? Unless `ANY`, `closest` becomes the closest such hit.
+/// Does the ray meet any triangle of a leaf before `t_max`? Unless `ANY`, `closest` becomes the closest such hit.
 #[inline(always)]
-pub(super) fn meet_block<S: Simd, const ANY: bool>(
+pub(super) fn meet_leaf<S: Simd, const ANY: bool>(
     simd: S,
     sheared: &Sheared<S>,
-    (ray, block): (&Ray, &TriangleBlock<WIDTH>),
+    (ray, leaf): (&Ray, &Leaf<'_>),
     t_max: S::F,
     closest: &mut Hit,
 ) -> bool {
-    let seen = sheared.project(simd, block);
+    let mut seen = sheared.project(simd, leaf);
+    seen.inside = simd.and(seen.inside, simd.mask((1 << leaf.count) - 1));
     if simd.bits(seen.inside) == 0 {
         return false;
     }
-    let meets = sheared.meet(simd, (ray, block), &seen, t_max);
+    let meets = sheared.meet(simd, (ray, leaf), &seen, t_max);
     let hit = simd.bits(meets.hit);
     if !ANY && hit != 0 {
-        write_closest(simd, block, hit, &meets, closest);
+        write_closest(simd, leaf, hit, &meets, closest);
     }
     hit != 0
 }
 
-/// Writes the closest of a block's hits, those in `mask`, to `closest`.
+/// Writes the closest of a leaf's hits, those in `mask`, to `closest`.
 #[inline(always)]
-fn write_closest<S: Simd>(
-    simd: S,
-    block: &TriangleBlock<WIDTH>,
-    mask: u32,
-    meets: &Meets<S>,
-    closest: &mut Hit,
-) {
+fn write_closest<S: Simd>(simd: S, leaf: &Leaf<'_>, mask: u32, meets: &Meets<S>, closest: &mut Hit) {
     let mut lane = mask.trailing_zeros() as usize % WIDTH;
     let mut t = simd.extract(meets.t, lane);
     let mut others = mask & (mask - 1);
@@ -139,19 +137,7 @@ fn write_closest<S: Simd>(
         }
         others &= others - 1;
     }
-    *closest = block.hit(lane, t, [simd.extract(meets.b[0], lane), simd.extract(meets.b[1], lane)]);
-}
-
-impl<S: Simd> Triangles<S> for TriangleBlock<WIDTH> {
-    #[inline(always)]
-    unsafe fn coordinate(&self, simd: S, vertex: usize, axis: usize) -> S::F {
-        // SAFETY: the caller's promise.
-        simd.load(unsafe { self.vertices.get_unchecked(vertex).get_unchecked(axis) })
-    }
-
-    fn vertices(&self, lane: usize) -> [Vec3; 3] {
-        self.triangle(lane)
-    }
+    *closest = leaf.hit(lane, t, [simd.extract(meets.b[0], lane), simd.extract(meets.b[1], lane)]);
 }
 
 impl Bvh {
@@ -163,20 +149,24 @@ impl Bvh {
         unsafe { self.nodes.get_unchecked(child.index()) }
     }
 
-    /// The block of a reference to a block.
-    #[inline(always)]
-    pub(super) fn block(&self, child: NodeRef) -> &TriangleBlock<WIDTH> {
-        debug_assert!(child.is_block() && child.index() < self.blocks.len());
-        // SAFETY: as above.
-        unsafe { self.blocks.get_unchecked(child.index()) }
-    }
-
     /// Asks for the cache lines of a child. Any reference will do.
     #[inline(always)]
     pub(super) fn prefetch<S: Simd>(&self, simd: S, child: NodeRef) {
-        let node = self.nodes.as_ptr().wrapping_add(child.index()).cast::<u8>();
-        let block = self.blocks.as_ptr().wrapping_add(child.index()).cast::<u8>();
-        simd.prefetch::<TriangleBlock<WIDTH>>(if child.is_node() { node } else { block }.cast());
+        const LINE: usize = 64;
+        if child.is_node() {
+            let node = self.nodes.as_ptr().wrapping_add(child.index()).cast::<u8>();
+            for line in 0..size_of::<Node>() / LINE {
+                simd.prefetch(node.wrapping_add(LINE * line));
+            }
+            return;
+        }
+        // No line twice: that costs more than a branch. A leaf may start anywhere in its first line.
+        let (start, bytes) = self.leaves.place(child);
+        let mut at = 0;
+        while at < bytes + LINE - 1 {
+            simd.prefetch(start.wrapping_add(at));
+            at += LINE;
+        }
     }
 
     /// Asks for the cache lines of all children that are waiting.

@@ -192,9 +192,7 @@ impl Simd for Avx2 {
         })
     }
     #[inline(always)]
-    fn prefetch<T>(self, start: *const T) {
-        for offset in (0..size_of::<T>()).step_by(64) {
-            avx2!(_mm_prefetch::<_MM_HINT_T0>(start.cast::<i8>().wrapping_add(offset)));
-        }
+    fn prefetch(self, at: *const u8) {
+        avx2!(_mm_prefetch::<_MM_HINT_T0>(at.cast()));
     }
 }

@@ -81,8 +81,8 @@ pub(super) trait Simd: Lanes {
     fn keyed(self, keys: Self::Keys) -> u32;
     /// Removes and returns the smallest key, leaving `u32::MAX` in its lane.
     fn take_least(self, keys: &mut Self::Keys) -> u32;
-    /// Asks for the cache lines of a `T` that may be needed soon. Any address will do: nothing is read.
-    fn prefetch<T>(self, start: *const T);
+    /// Asks for the cache line of a byte that may be needed soon. Any address will do: nothing is read.
+    fn prefetch(self, at: *const u8);
 }
 
 /// The instruction set that traversal uses, chosen when the tree is built.

@@ -142,5 +142,5 @@ impl Simd for Portable {
         least
     }
     #[inline(always)]
-    fn prefetch<T>(self, _start: *const T) {}
+    fn prefetch(self, _at: *const u8) {}
 }

@@ -1,0 +1,104 @@
+//! Nodes, and references to what is below them.
+
+use super::WIDTH;
+use crate::Bounds3;
+
+/// The largest number of triangles, of nodes or of other primitives that a [`NodeRef`] can tell apart.
+pub(crate) const MAX_INDEX: usize = (1 << 28) - 1;
+
+/// A child: a node, a leaf of 1 to 8 triangles, or one other primitive.
+///
+/// From the highest bit: 0, 0, the node (30 bits); 0, 1, the other primitive (30); 1, triangles less one (3), the first
+/// of them (28).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct NodeRef(u32);
+
+impl NodeRef {
+    /// No child: a triangle that no ray hits, which is always the first.
+    pub const NONE: Self = Self(Self::LEAF);
+    const LEAF: u32 = 1 << 31;
+    const OTHER: u32 = 1 << 30;
+    const FIRST: u32 = MAX_INDEX as u32;
+
+    pub fn node(index: usize) -> Self {
+        Self(index as u32)
+    }
+
+    /// Up to eight triangles.
+    pub fn leaf(first: usize, count: usize) -> Self {
+        Self(Self::LEAF | (count as u32 - 1) << 28 | first as u32)
+    }
+
+    pub fn other(index: u32) -> Self {
+        Self(Self::OTHER | index)
+    }
+
+    /// The same child where `nodes` and `triangles` precede its own.
+    pub fn shifted(self, nodes: usize, triangles: usize) -> Self {
+        if self.is_node() {
+            Self(self.0 + nodes as u32)
+        } else if self.is_leaf() && self != Self::NONE {
+            Self(self.0 + triangles as u32)
+        } else {
+            self
+        }
+    }
+
+    #[inline(always)]
+    pub fn is_node(self) -> bool {
+        self.0 < Self::OTHER
+    }
+
+    #[inline(always)]
+    pub fn is_leaf(self) -> bool {
+        self.0 >= Self::LEAF
+    }
+
+    /// Of a node or an other primitive.
+    #[inline(always)]
+    pub fn index(self) -> usize {
+        (self.0 & !Self::OTHER) as usize
+    }
+
+    /// The first triangle of a leaf.
+    #[inline(always)]
+    pub fn first(self) -> usize {
+        (self.0 & Self::FIRST) as usize
+    }
+
+    /// Triangles of a leaf.
+    #[inline(always)]
+    pub fn count(self) -> usize {
+        (self.0 >> 28 & 7) as usize + 1
+    }
+}
+
+/// Boxes of up to eight children, and the children. A missing child has the empty box.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(crate) struct Node {
+    /// Rows: the smallest and the largest coordinates of x, of y, of z.
+    pub bounds: [[f32; WIDTH]; 6],
+    pub children: [NodeRef; WIDTH],
+}
+
+impl Node {
+    /// Without children.
+    pub const EMPTY: Self = {
+        let (min, max) = ([f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]);
+        Self { bounds: [min, max, min, max, min, max], children: [NodeRef::NONE; WIDTH] }
+    };
+
+    /// With at most eight children.
+    pub fn new(children: impl Iterator<Item = (Bounds3, NodeRef)>) -> Self {
+        let mut node = Self::EMPTY;
+        for (slot, (bounds, child)) in children.enumerate() {
+            node.children[slot] = child;
+            for axis in 0..3 {
+                node.bounds[2 * axis][slot] = bounds.min[axis];
+                node.bounds[2 * axis + 1][slot] = bounds.max[axis];
+            }
+        }
+        node
+    }
+}
