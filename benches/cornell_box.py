@@ -2,9 +2,9 @@
 
     python benches/cornell_box.py [--size 512] [--spp 16] [--runs 7] [--depth 8] [--threads 2]
 
-Prints one table: each renderer's median, and the median of the ratios of runs that were taken in turn, so
-that a machine whose speed drifts does not favour either. The same scene, depth, strategy (BSDF and light
-sampling, power heuristic), independent samples, no Russian roulette.
+Prints one table: each renderer's median, and the median of the ratios of runs that were taken in turn. The
+same scene, depth, strategy (BSDF and light sampling, power heuristic), independent samples, no Russian
+roulette. Mitsuba gets a box filter, with which it is fastest; to us the filter makes no difference.
 
 Needs ``steradian`` and ``mitsuba`` (``pip install mitsuba==3.9.1``) in one environment, and LLVM for
 Mitsuba's vectorised variant (Debian: ``libllvm19``; elsewhere set ``DRJIT_LIBLLVM_PATH``).
@@ -13,68 +13,25 @@ Mitsuba's vectorised variant (Debian: ``libllvm19``; elsewhere set ``DRJIT_LIBLL
 from __future__ import annotations
 
 import argparse
-import importlib.metadata
 import json
 import statistics
-import time
-from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
-import steradian as sr
+from peers import Work, in_turn, mitsuba_run, mitsuba_version, steradian_run
 
 SCENE = Path(__file__).resolve().parent.parent / "scenes" / "cornell-box.xml"
 
 
-def steradian_run(size: int, spp: int, depth: int, threads: int) -> Callable[[int], float]:
-    """A function from a seed to the seconds that one render takes."""
-    scene = sr.load(SCENE)
-
-    def run(seed: int) -> float:
-        start = time.perf_counter()
-        sr.render(
-            scene,
-            spp=spp,
-            size=(size, size),
-            max_depth=depth,
-            roulette_depth=None,
-            sampler="independent",
-            seed=seed,
-            threads=threads,
-        )
-        return time.perf_counter() - start
-
-    return run
-
-
-def mitsuba_run(size: int, spp: int, depth: int, threads: int) -> Callable[[int], float]:
-    """The same for Mitsuba's ``llvm_ad_rgb``; kernels are compiled before the clock starts."""
-    import drjit as dr
-    import mitsuba as mi
-
-    mi.set_variant("llvm_ad_rgb")
-    dr.set_thread_count(threads)
-    scene = mi.load_file(str(SCENE), res=size, spp=spp)
-    sensor = mi.load_dict(
-        {
-            "type": "perspective",
-            "fov": 39.3077,
-            "to_world": mi.ScalarTransform4f().look_at(
-                origin=[2.78, 2.73, -8], target=[2.78, 2.73, 0], up=[0, 1, 0]
-            ),
-            "film": {"type": "hdrfilm", "width": size, "height": size, "rfilter": {"type": "box"}},
-            "sampler": {"type": "independent", "sample_count": spp},
-        }
-    )
-    integrator = mi.load_dict({"type": "path", "max_depth": depth, "rr_depth": 1_000_000})
-
-    def run(seed: int) -> float:
-        start = time.perf_counter()
-        image = mi.render(scene, sensor=sensor, integrator=integrator, spp=spp, seed=seed)
-        dr.eval(image)
-        dr.sync_thread()
-        return time.perf_counter() - start
-
-    return run
+def sensor(mi: Any) -> dict[str, Any]:
+    """The scene's camera with a box filter."""
+    return {
+        "type": "perspective",
+        "fov": 39.3077,
+        "to_world": mi.ScalarTransform4f().translate([2.78, 2.73, -8]),
+        "film": {"type": "hdrfilm", "rfilter": {"type": "box"}},
+        "sampler": {"type": "independent"},
+    }
 
 
 def main() -> None:
@@ -84,29 +41,25 @@ def main() -> None:
         parser.add_argument(f"--{name}", type=int, default=default)
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of the table")
     given = parser.parse_args()
-    settings = (given.size, given.spp, given.depth, given.threads)
-    ours, theirs = steradian_run(*settings), mitsuba_run(*settings)
-    ours(0), theirs(0)  # warm up: threads, caches, compiled kernels
-    times = [(ours(seed), theirs(seed)) for seed in range(1, given.runs + 1)]
-    paths = given.size**2 * given.spp / 1e6
-    rates = [[paths / seconds for seconds in column] for column in zip(*times, strict=True)]
-    ratio = statistics.median(their / our for our, their in times)
+    work = Work(SCENE, given.size, given.size, given.spp, given.depth, None, given.threads)
+    compared = in_turn(work, steradian_run(work), mitsuba_run(work, sensor=sensor), given.runs)
     table = {
         "scene": SCENE.stem,
         **vars(given),
-        "steradian_mpaths_per_second": statistics.median(rates[0]),
-        "mitsuba_mpaths_per_second": statistics.median(rates[1]),
-        "ratio": ratio,
-        "mitsuba": importlib.metadata.version("mitsuba"),
+        "steradian_mpaths_per_second": statistics.median(compared.ours),
+        "mitsuba_mpaths_per_second": statistics.median(compared.theirs),
+        "ratio": compared.ratio,
+        "mitsuba": mitsuba_version(),
     }
     if given.json:
         print(json.dumps(table))
         return
     print(f"{SCENE.stem}, {given.size}², {given.spp} spp, depth {given.depth}, {given.threads} threads")
-    for name, column in zip(("steradian", f"mitsuba {table['mitsuba']} llvm"), rates, strict=True):
-        low, middle, high = min(column), statistics.median(column), max(column)
+    rows = (("steradian", compared.ours), (f"mitsuba {table['mitsuba']} llvm", compared.theirs))
+    for name, rates in rows:
+        low, middle, high = min(rates), statistics.median(rates), max(rates)
         print(f"  {name:22} {middle:6.3f} million paths/s   ({low:.3f} to {high:.3f})")
-    print(f"  ratio                  {ratio:6.3f}   (median of {given.runs} pairs)")
+    print(f"  ratio                  {compared.ratio:6.3f}   (median of {given.runs} pairs)")
 
 
 if __name__ == "__main__":
