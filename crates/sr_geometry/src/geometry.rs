@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::{DVec3, Vec2, Vec3};
 use rayon::prelude::*;
 
-use crate::bvh::{Bvh, MAX_INDEX, PrimRef, Tree};
+use crate::bvh::{Bvh, MAX_INDEX, PrimRef, Round, Tree};
 use crate::instance::PlacedGroup;
 use crate::{
     Bounds3, Disk, GeometryError, GeometryInput, Hit, NO_INSTANCE, Ray, Shape, ShapeId, Sphere, TriangleMesh,
@@ -147,6 +147,11 @@ impl Geometry {
             }
         }
         self.world = self.build_tree(&mut prims);
+        // Batches meet the world only.
+        let (mut bvh, mut world) = (std::mem::replace(&mut self.bvh, Bvh::new()), self.world);
+        let vertices_of = |shape, triangle| self.triangle_vertices(shape, triangle);
+        bvh.add_pieces(&mut world, &prims, vertices_of, |other| self.round_of(other));
+        (self.bvh, self.world) = (bvh, world);
     }
 
     fn build_tree(&mut self, prims: &mut [PrimRef]) -> Tree {
@@ -154,6 +159,15 @@ impl Geometry {
         let tree = bvh.add_tree(prims, |shape, triangle| self.triangle_vertices(shape, triangle));
         self.bvh = bvh;
         tree
+    }
+
+    /// The sphere or disk that a primitive of the tree is.
+    fn round_of(&self, other: u32) -> Option<Round<'_>> {
+        match self.others[other as usize] {
+            Other::Sphere { shape, index } => Some(Round::Sphere(shape, &self.spheres[index as usize])),
+            Other::Disk { shape, index } => Some(Round::Disk(shape, &self.disks[index as usize])),
+            Other::Instance(_) => None,
+        }
     }
 
     /// What the tree over these shapes is built from. Triangles without an area are left out.

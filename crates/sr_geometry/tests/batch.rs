@@ -3,18 +3,27 @@
 mod common;
 
 use common::{OwnedMesh, Random, closed_box, meet_batch, soup};
-use glam::{Quat, Vec3};
-use sr_geometry::{BATCH, Geometry, GeometryInput, Hit, Ray};
+use glam::{Mat3, Quat, Vec3};
+use sr_geometry::{BATCH, Disk, Geometry, GeometryInput, Hit, Ray, Shape, ShapeRef, Sphere};
 
-/// Boxes in any pose within the unit cube, which parallelograms make, and triangles that make none.
-fn mixed(random: &mut Random, boxes: usize, triangles: usize) -> Geometry {
+/// Boxes in any pose within the unit cube, which parallelograms make, triangles that make none, spheres and disks.
+fn mixed(random: &mut Random, boxes: usize, triangles: usize, rounds: usize) -> Geometry {
     let mut meshes = vec![soup(random, triangles, 0.7)];
     for _ in 0..boxes {
         let turn = Quat::from_axis_angle(random.direction(), 6.3 * random.unit());
         let (at, size) = (0.5 * random.cube(), 0.1 + 0.5 * random.cube().abs());
         meshes.push(closed_box(1).transformed(|p| turn * (p * size) + at));
     }
-    let shapes = meshes.iter().map(OwnedMesh::shape).collect();
+    let mut shapes: Vec<_> = meshes.iter().map(OwnedMesh::shape).collect();
+    for i in 0..rounds {
+        let (center, size) = (0.7 * random.cube(), 10f32.powf(-2.0 * random.unit()));
+        let (u, v) = random.direction().any_orthonormal_pair();
+        let (u_axis, v_axis) = (size * u, random.unit() * v);
+        shapes.push(match i % 2 {
+            0 => Shape::Sphere(Sphere { center, radius: size, frame: Mat3::IDENTITY, flip_normals: false }),
+            _ => Shape::Disk(Disk { center, u_axis, v_axis, flip_normals: false }),
+        });
+    }
     Geometry::build(GeometryInput { shapes, ..Default::default() }).unwrap()
 }
 
@@ -41,7 +50,7 @@ fn rays_meet_the_same_in_batches() {
     let (mut met, mut ties, mut all) = (0, 0, 0);
     for i in 0..300 {
         let boxes = i % 5;
-        let geometry = mixed(&mut random, boxes, [0, 1, 4, 16][i % 4]);
+        let geometry = mixed(&mut random, boxes, [0, 1, 4, 16][i % 4], [0, 3, 10][i % 3]);
         let rays = rays(&mut random, BATCH);
         for (ray, (hit, occluded)) in rays.iter().zip(meet_batch(&geometry, &rays)) {
             let single = geometry.intersect(ray);
@@ -49,7 +58,12 @@ fn rays_meet_the_same_in_batches() {
             assert_eq!((hit.is_some(), occluded), (single.is_some(), geometry.occluded(ray)), "{ray:?}");
             let (Some(hit), Some(single)) = (hit, single) else { continue };
             met += 1;
-            assert!(hit.b1 >= 0.0 && hit.b2 >= 0.0 && hit.b1 + hit.b2 <= 1.0, "{hit:?}");
+            let fits = match geometry.shape_of(hit.shape) {
+                ShapeRef::Mesh => hit.b1 >= 0.0 && hit.b2 >= 0.0 && hit.b1 + hit.b2 <= 1.0,
+                ShapeRef::Disk(_) => hit.b1.hypot(hit.b2) <= 1.0,
+                ShapeRef::Sphere(_) => hit.b1 == 0.0 && hit.b2 == 0.0,
+            };
+            assert!(fits, "{hit:?}");
             if !same(&hit, &single, ray) {
                 // At an edge, or where two triangles meet.
                 let (a, b) = (geometry.surface(ray, &hit), geometry.surface(ray, &single));
@@ -65,7 +79,7 @@ fn rays_meet_the_same_in_batches() {
 fn a_ray_does_not_depend_on_its_neighbours() {
     let mut random = Random(52);
     for count in [0, 1, 40, 500] {
-        let geometry = mixed(&mut random, 2, count);
+        let geometry = mixed(&mut random, 2, count, 8);
         let rays = rays(&mut random, BATCH);
         let all = meet_batch(&geometry, &rays);
         for _ in 0..100 {

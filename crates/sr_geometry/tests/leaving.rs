@@ -166,15 +166,17 @@ fn spheres_from_inside_and_outside() {
             Geometry::build(GeometryInput { shapes: vec![Shape::Sphere(sphere)], ..Default::default() })
                 .unwrap();
         let mut ray = Ray::new(center, random.direction());
-        for _ in 0..500 {
-            let hit = geometry.intersect(&ray).expect("a ray from inside hits");
+        for step in 0..500 {
+            // Every other step by a ray that is one of a batch.
+            let (hit, occluded) = meet_both(&geometry, &ray)[step % 2];
+            assert!(occluded, "radius {radius}, {ray:?}");
+            let hit = hit.expect("a ray from inside hits");
             let surface = geometry.surface(&ray, &hit);
             let out = (surface.p - center).normalize();
             let direction = random.direction();
             let leaving = surface.spawn_ray(if direction.dot(out) > 0.0 { direction } else { -direction });
-            assert_eq!(geometry.intersect(&leaving), None, "radius {radius}, {leaving:?}");
+            assert_eq!(meet_both(&geometry, &leaving), [(None, false); 2], "radius {radius}, {leaving:?}");
             ray = surface.spawn_ray(if direction.dot(out) > 0.0 { -direction } else { direction });
-            assert!(geometry.occluded(&ray), "radius {radius}, {ray:?}");
         }
     }
 }
@@ -198,9 +200,12 @@ fn disks() {
             let target =
                 disk.center + disk.u_axis * (random.unit() - 0.5) + disk.v_axis * (random.unit() - 0.5);
             let ray = Ray::new(origin, target - origin);
-            let hit = geometry.intersect(&ray).expect("aimed at the disk");
-            let surface = geometry.surface(&ray, &hit);
-            assert_eq!(geometry.intersect(&surface.spawn_ray(random.direction())), None);
+            for (hit, occluded) in meet_both(&geometry, &ray) {
+                assert!(occluded, "{ray:?}");
+                let surface = geometry.surface(&ray, &hit.expect("aimed at the disk"));
+                let leaving = surface.spawn_ray(random.direction());
+                assert_eq!(meet_both(&geometry, &leaving), [(None, false); 2]);
+            }
         }
     }
 }

@@ -1,17 +1,16 @@
 //! Meeting a tree with many rays: the instruction set is chosen once for all of them.
 //!
-//! Trees of few triangles are met by packets, and by [`scan`] where a packet is in doubt; others ray by ray, or,
-//! where they are large, by several rays in turn.
+//! Small trees are met by packets, and ray by ray where a packet is in doubt; others ray by ray, or, where they are
+//! large, by several rays in turn.
 
 use super::dispatch::meet;
 use super::interleave::walk_many;
 use super::packet;
-use super::scan::scan;
 #[cfg(target_arch = "x86_64")]
 use super::simd::{Avx2, Avx512};
 use super::simd::{Kernel, Lanes, Simd};
-use super::{Bvh, Form, Pieces, Tree, TriangleBlock, WIDE};
-use crate::{BATCH, Bounds3, Hit, Hits, Ray, Rays};
+use super::{Bvh, Form, Pieces, Tree};
+use crate::{BATCH, Hit, Hits, Ray, Rays};
 
 impl Bvh {
     /// The closest hits of the first `count` rays. `meet_other` is as for [`Bvh::intersect`].
@@ -79,23 +78,11 @@ struct Batch<'a, F> {
     meet_other: F,
 }
 
-/// Few triangles: for packets, and for single rays.
-struct Few<'a> {
-    pieces: (&'a Pieces, &'a Bounds3),
-    triangles: (&'a [TriangleBlock<WIDE>], usize, f32),
-}
-
 impl<F: Fn(u32, &Ray) -> Option<Hit>> Batch<'_, F> {
-    /// Few triangles, if packets can meet them.
+    /// What packets meet, if they can.
     #[inline(always)]
-    fn few(&self) -> Option<Few<'_>> {
-        let Form::Few { first, count, extent, pieces } = self.tree.form else { return None };
-        let pieces = (&self.bvh.pieces[pieces? as usize], &self.tree.bounds);
-        let count = count as usize;
-        Some(Few {
-            pieces,
-            triangles: (&self.bvh.few[first as usize..][..count.div_ceil(WIDE)], count, extent),
-        })
+    fn pieces(&self) -> Option<&Pieces> {
+        self.tree.pieces.map(|pieces| &self.bvh.pieces[pieces as usize])
     }
 
     /// Meets the tree ray by ray, or in a large tree with several rays in turn; `answer(i, hit)` gets what ray i hits.
@@ -112,15 +99,24 @@ impl<F: Fn(u32, &Ray) -> Option<Hit>> Batch<'_, F> {
                 let root = (root, &tree.bounds);
                 walk_many::<_, ANY>(eight, bvh, root, (rays, count), meet_other, answer);
             }
-            _ => {
-                for i in 0..count {
-                    let ray = rays.get(i);
-                    let mut hit = Hit::none_before(ray.t_max);
-                    let any = meet::<_, _, ANY>(eight, few, (bvh, tree), &ray, meet_other, &mut hit);
-                    answer(i, any.then_some(&hit));
-                }
-            }
+            _ => (0..count).for_each(|i| self.meet_one::<_, _, ANY>(eight, few, i, &mut answer)),
         }
+    }
+
+    /// As `meet`, with one ray.
+    #[inline(always)]
+    fn meet_one<S: Simd, L: Lanes, const ANY: bool>(
+        &self,
+        eight: S,
+        few: L,
+        i: usize,
+        mut answer: impl FnMut(usize, Option<&Hit>),
+    ) {
+        let Self { bvh, tree, rays, ref meet_other, .. } = *self;
+        let ray = rays.get(i);
+        let mut hit = Hit::none_before(ray.t_max);
+        let any = meet::<_, _, ANY>(eight, few, (bvh, tree), &ray, meet_other, &mut hit);
+        answer(i, any.then_some(&hit));
     }
 }
 
@@ -142,16 +138,13 @@ impl<F: Fn(u32, &Ray) -> Option<Hit>> Work for Closest<'_, F> {
     #[inline(always)]
     fn run<S: Simd, L: Lanes>(self, eight: S, lanes: L) {
         let Self { batch, hits } = self;
-        let Some(few) = batch.few() else {
+        let Some(pieces) = batch.pieces() else {
             return batch.meet::<_, _, false>(eight, lanes, |i, hit| hits.set(i, hit));
         };
         for first in (0..batch.count).step_by(L::COUNT) {
-            let mut doubtful = packet::closest(lanes, few.pieces, batch.rays, (first, batch.count), hits);
+            let mut doubtful = packet::closest(lanes, pieces, batch.rays, (first, batch.count), hits);
             while let Some(lane) = take_lowest(&mut doubtful) {
-                let ray = batch.rays.get(first + lane);
-                let mut hit = Hit::none_before(ray.t_max);
-                let found = scan::<_, false>(lanes, few.triangles, &ray, &mut hit);
-                hits.set(first + lane, found.then_some(&hit));
+                batch.meet_one::<_, _, false>(eight, lanes, first + lane, |i, hit| hits.set(i, hit));
             }
         }
     }
@@ -166,18 +159,17 @@ impl<F: Fn(u32, &Ray) -> Option<Hit>> Work for Any<'_, F> {
     #[inline(always)]
     fn run<S: Simd, L: Lanes>(self, eight: S, lanes: L) {
         let Self { batch, occluded } = self;
-        let Some(few) = batch.few() else {
+        let Some(pieces) = batch.pieces() else {
             return batch.meet::<_, _, true>(eight, lanes, |i, hit| occluded[i] = hit.is_some());
         };
         for first in (0..batch.count).step_by(L::COUNT) {
-            let (mut hit, mut doubtful) = packet::any(lanes, few.pieces, batch.rays, (first, batch.count));
-            while let Some(lane) = take_lowest(&mut doubtful) {
-                let ray = batch.rays.get(first + lane);
-                let mut unused = Hit::none_before(ray.t_max);
-                hit |= u32::from(scan::<_, true>(lanes, few.triangles, &ray, &mut unused)) << lane;
-            }
+            let (hit, mut doubtful) = packet::any(lanes, pieces, batch.rays, (first, batch.count));
             for (lane, occluded) in occluded[first..][..L::COUNT].iter_mut().enumerate() {
                 *occluded = hit >> lane & 1 != 0;
+            }
+            while let Some(lane) = take_lowest(&mut doubtful) {
+                let answer = |i: usize, hit: Option<&Hit>| occluded[i] = hit.is_some();
+                batch.meet_one::<_, _, true>(eight, lanes, first + lane, answer);
             }
         }
     }

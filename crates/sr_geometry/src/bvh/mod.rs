@@ -2,7 +2,8 @@
 //!
 //! In: [`PrimRef`]s, a box and an identity each. Out: [`Bvh`], flat arrays of nodes and of leaves of up to eight
 //! triangles, and a [`Tree`] per call. `build` decides the tree, `traverse` walks it, `interleave` does so with several
-//! rays in turn, `scan` meets the triangles of trees that are not worth a node; `dispatch` chooses the instruction set.
+//! rays in turn, `scan` meets the triangles of trees that are not worth a node, `packet` small trees with a ray in each lane;
+//! `dispatch` chooses the instruction set.
 //! Several trees (the world's and the groups') share the arrays.
 //!
 //! Invariant: every tree is at most [`MAX_DEPTH`] nodes deep, so the traversal stack cannot overflow.
@@ -28,7 +29,7 @@ mod traverse;
 use glam::Vec3;
 use rayon::prelude::*;
 
-use crate::{Bounds3, Hit, NO_INSTANCE, ShapeId};
+use crate::{Bounds3, Disk, Hit, NO_INSTANCE, ShapeId, Sphere};
 use simd::Kernel;
 
 use build::MAX_DEPTH;
@@ -45,6 +46,10 @@ const WIDE: usize = 16;
 
 /// Up to this many triangles get no tree: meeting all of them is faster (see docs/performance.md).
 const FEW: usize = 64;
+
+/// Packets meet all of up to this many triangles, and of up to this many spheres and disks.
+const FEW_FLATS: usize = 64;
+const FEW_ROUNDS: usize = 16;
 
 /// Bytes of nodes and leaves from which traversal prefetches: what a second-level cache surely does not hold.
 const PREFETCH_FROM: usize = 1 << 20;
@@ -66,6 +71,13 @@ impl PrimRef {
     fn is_triangle(&self) -> bool {
         self.shape != Self::OTHER
     }
+}
+
+/// A primitive that is neither a triangle nor an instance.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Round<'a> {
+    Sphere(ShapeId, &'a Sphere),
+    Disk(ShapeId, &'a Disk),
 }
 
 /// Up to `N` triangles, transposed. Missing ones have NaN vertices, which no ray hits.
@@ -111,6 +123,8 @@ impl<const N: usize> TriangleBlock<N> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Tree {
     form: Form,
+    /// What packets meet, in [`Bvh::pieces`]: once more all of the tree, if it is small.
+    pieces: Option<u32>,
     pub bounds: Bounds3,
 }
 
@@ -119,15 +133,14 @@ pub(crate) struct Tree {
 enum Form {
     /// Below a node.
     Nodes(NodeRef),
-    /// As `count` triangles in wide blocks from `first` on, without nodes, and as `pieces` if they are fit for packets;
-    /// `extent` is the longest side of their box.
-    Few { first: u32, count: u32, extent: f32, pieces: Option<u32> },
+    /// As `count` triangles in wide blocks from `first` on, without nodes; `extent` is the longest side of their box.
+    Few { first: u32, count: u32, extent: f32 },
 }
 
 impl Tree {
     /// The tree without primitives.
     pub const EMPTY: Self =
-        Self { form: Form::Few { first: 0, count: 0, extent: 0.0, pieces: None }, bounds: Bounds3::EMPTY };
+        Self { form: Form::Few { first: 0, count: 0, extent: 0.0 }, pieces: None, bounds: Bounds3::EMPTY };
 }
 
 /// The arrays that all trees share.
@@ -164,14 +177,9 @@ impl Bvh {
         let bounds = prims.par_iter().map(|p| p.bounds).reduce(|| Bounds3::EMPTY, Bounds3::union);
         if prims.len() <= FEW && prims.iter().all(PrimRef::is_triangle) {
             let (first, count) = (self.few.len() as u32, prims.len() as u32);
-            let extent = bounds.extent().max_element();
-            let pieces = Pieces::new(prims, extent, &vertices_of).map(|pieces| {
-                self.pieces.push(pieces);
-                self.pieces.len() as u32 - 1
-            });
-            let form = Form::Few { first, count, extent, pieces };
+            let form = Form::Few { first, count, extent: bounds.extent().max_element() };
             self.few.extend(prims.chunks(WIDE).map(|prims| TriangleBlock::new(prims, &vertices_of)));
-            return Tree { form, bounds };
+            return Tree { form, pieces: None, bounds };
         }
         let (nodes, triangles) = (self.nodes.len(), self.leaves.count());
         let mut tree = build::build(prims);
@@ -180,7 +188,26 @@ impl Bvh {
         self.nodes.append(&mut tree.nodes);
         self.leaves.append(&tree.leaves, prims, vertices_of);
         self.prefetches = self.memory_bytes() > PREFETCH_FROM;
-        Tree { form: Form::Nodes(tree.root), bounds }
+        Tree { form: Form::Nodes(tree.root), pieces: None, bounds }
+    }
+
+    /// Makes a tree that was built from `prims` ready for packets, if it is fit for them. `round_of` tells what those
+    /// are that are no triangles; `None`: instances.
+    pub fn add_pieces<'a>(
+        &mut self,
+        tree: &mut Tree,
+        prims: &[PrimRef],
+        vertices_of: impl Fn(ShapeId, u32) -> [Vec3; 3],
+        round_of: impl Fn(u32) -> Option<Round<'a>>,
+    ) {
+        let flats = prims.iter().filter(|p| p.is_triangle()).count();
+        if flats > FEW_FLATS || prims.len() - flats > FEW_ROUNDS {
+            return;
+        }
+        if let Some(pieces) = Pieces::new(prims, vertices_of, round_of) {
+            tree.pieces = Some(self.pieces.len() as u32);
+            self.pieces.push(pieces);
+        }
     }
 
     /// Bytes of nodes and triangles.

@@ -1,11 +1,11 @@
 //! The tree's invariants, and the kernels against one another.
 
-use glam::Vec3;
+use glam::{Mat3, Vec2, Vec3};
 
 use super::sheared::Triangles;
 use super::simd::{Kernel, Portable};
-use super::{Bvh, FEW, Form, MAX_DEPTH, NodeRef, PrimRef, Tree, WIDE};
-use crate::{BATCH, Bounds3, Hit, Hits, Ray, Rays, ShapeId};
+use super::{Bvh, FEW, FEW_ROUNDS, Form, MAX_DEPTH, NodeRef, PrimRef, Round, Tree, WIDE};
+use crate::{BATCH, Bounds3, Disk, Hit, Hits, NO_INSTANCE, Ray, Rays, ShapeId, Sphere};
 
 /// A triangle at `at` with edges of about `size`.
 fn triangle(at: Vec3, size: f32, i: u32) -> [Vec3; 3] {
@@ -14,16 +14,35 @@ fn triangle(at: Vec3, size: f32, i: u32) -> [Vec3; 3] {
     [at, at + size * turn(1), at + size * turn(2)]
 }
 
-fn build(triangles: &[[Vec3; 3]]) -> (Bvh, Tree) {
+fn build(triangles: &[[Vec3; 3]], rounds: &[Round<'_>]) -> (Bvh, Tree) {
     let prim = |(i, vertices): (usize, &[Vec3; 3])| PrimRef {
         bounds: vertices.iter().fold(Bounds3::EMPTY, |bounds, &v| bounds.with(v)),
         shape: 0,
         primitive: i as u32,
     };
+    let other = |(i, round): (usize, &Round<'_>)| PrimRef {
+        bounds: match round {
+            Round::Sphere(_, sphere) => sphere.bounds(),
+            Round::Disk(_, disk) => disk.bounds(),
+        },
+        shape: PrimRef::OTHER,
+        primitive: i as u32,
+    };
     let mut prims: Vec<PrimRef> = triangles.iter().enumerate().map(prim).collect();
+    prims.extend(rounds.iter().enumerate().map(other));
     let mut bvh = Bvh::new();
-    let tree = bvh.add_tree(&mut prims, |ShapeId(_), i| triangles[i as usize]);
+    let vertices_of = |ShapeId(_), i: u32| triangles[i as usize];
+    let mut tree = bvh.add_tree(&mut prims, vertices_of);
+    bvh.add_pieces(&mut tree, &prims, vertices_of, |i| Some(rounds[i as usize]));
     (bvh, tree)
+}
+
+fn meet_round(round: Round<'_>, ray: &Ray) -> Option<Hit> {
+    let (shape, t, at) = match round {
+        Round::Sphere(shape, sphere) => (shape, sphere.intersect(ray)?, Vec2::ZERO),
+        Round::Disk(shape, disk) => disk.intersect(ray).map(|(t, at)| (shape, t, at))?,
+    };
+    Some(Hit { t, b1: at.x, b2: at.y, shape, primitive: 0, instance: NO_INSTANCE })
 }
 
 /// Checks that children lie in their boxes; returns the depth and every triangle found.
@@ -50,7 +69,7 @@ fn visit(bvh: &Bvh, child: NodeRef, bounds: &Bounds3, found: &mut Vec<u32>) -> u
 }
 
 fn check_tree(triangles: &[[Vec3; 3]]) -> usize {
-    let (bvh, tree) = build(triangles);
+    let (bvh, tree) = build(triangles, &[]);
     let mut found = Vec::new();
     let depth = match tree.form {
         Form::Nodes(root) => visit(&bvh, root, &tree.bounds, &mut found),
@@ -87,67 +106,111 @@ fn the_depth_is_bounded_where_the_heuristic_peels_off_one_at_a_time() {
 }
 
 /// Meets rays in batches of `count`.
-fn meet_batches(bvh: &Bvh, tree: &Tree, rays: &[Ray], count: usize) -> Vec<(Option<Hit>, bool)> {
+fn meet_batches(
+    bvh: &Bvh,
+    tree: &Tree,
+    rounds: &[Round<'_>],
+    rays: &[Ray],
+    count: usize,
+) -> Vec<(Option<Hit>, bool)> {
     let mut met = Vec::new();
+    let meet_other = |i: u32, ray: &Ray| meet_round(rounds[i as usize], ray);
     for rays in rays.chunks(count) {
         let (mut batch, mut hits, mut occluded) = (Rays::NONE, Hits::NONE, [false; BATCH]);
         for (i, ray) in rays.iter().enumerate() {
             batch.set(i, ray);
         }
-        bvh.intersect_batch(tree, (&batch, rays.len()), |_, _| None, &mut hits);
-        bvh.occluded_batch(tree, (&batch, rays.len()), |_, _| None, &mut occluded);
+        bvh.intersect_batch(tree, (&batch, rays.len()), meet_other, &mut hits);
+        bvh.occluded_batch(tree, (&batch, rays.len()), meet_other, &mut occluded);
         met.extend((0..rays.len()).map(|i| (hits.get(i), occluded[i])));
     }
     met
 }
 
 /// Holds all kernels against one another.
-fn check_kernels(triangles: &[[Vec3; 3]], rays: &[Ray]) -> usize {
-    let (mut bvh, tree) = build(triangles);
-    let none = |_: u32, _: &Ray| None;
+fn check_kernels(triangles: &[[Vec3; 3]], rounds: &[Round<'_>], rays: &[Ray]) -> usize {
+    let (mut bvh, tree) = build(triangles, rounds);
+    let other = |i: u32, ray: &Ray| meet_round(rounds[i as usize], ray);
     let hits = |bvh: &Bvh| -> Vec<_> {
-        rays.iter().map(|ray| (bvh.intersect(&tree, ray, none), bvh.occluded(&tree, ray, none))).collect()
+        rays.iter().map(|ray| (bvh.intersect(&tree, ray, other), bvh.occluded(&tree, ray, other))).collect()
     };
-    let (detected, in_batches) = (hits(&bvh), meet_batches(&bvh, &tree, rays, BATCH));
+    let (detected, in_batches) = (hits(&bvh), meet_batches(&bvh, &tree, rounds, rays, BATCH));
     let settings = Kernel::available().flat_map(|kernel| [(kernel, false), (kernel, true)]);
     for (kernel, prefetches) in settings {
         (bvh.kernel, bvh.prefetches) = (kernel, prefetches);
         let name = format!("{kernel:?}, prefetches: {prefetches}");
         assert_eq!(detected, hits(&bvh), "{name}");
         for count in [BATCH, 21] {
-            assert_eq!(in_batches, meet_batches(&bvh, &tree, rays, count), "{name}, {count} at a time");
+            assert_eq!(
+                in_batches,
+                meet_batches(&bvh, &tree, rounds, rays, count),
+                "{name}, {count} at a time"
+            );
         }
     }
-    if let Form::Nodes(_) = tree.form {
+    if tree.pieces.is_none() {
         assert_eq!(detected, in_batches);
     }
     detected.iter().filter(|(hit, _)| hit.is_some()).count()
 }
 
-#[test]
-fn kernels_agree_to_the_bit() {
-    let at = |i: u32| 3.0 * Vec3::new(i as f32, 1.7 * i as f32, 2.9 * i as f32).map(f32::sin);
+/// Points scattered in [-3, 3]³.
+fn scattered(i: u32) -> Vec3 {
+    3.0 * Vec3::new(i as f32, 1.7 * i as f32, 2.9 * i as f32).map(f32::sin)
+}
+
+/// Rays everywhere, and some that are none.
+fn all_kinds_of_rays() -> Vec<Ray> {
     let ray = |i: u32| {
         // Some along planes and axes.
-        let direction = at(i * 7 + 3) * Vec3::new((i % 5) as f32, (i % 3) as f32, 1.0);
+        let direction = scattered(i * 7 + 3) * Vec3::new((i % 5) as f32, (i % 3) as f32, 1.0);
         let t_max = if i.is_multiple_of(4) { 0.5 } else { f32::INFINITY };
-        Ray { t_max, ..Ray::new(at(i * 3 + 1), direction) }
+        Ray { t_max, ..Ray::new(scattered(i * 3 + 1), direction) }
     };
     let mut rays: Vec<Ray> = (0..5000).map(ray).collect();
     for bad in [f32::NAN, f32::INFINITY, 0.0] {
         rays.push(Ray::new(Vec3::ONE, Vec3::splat(bad)));
         rays.push(Ray::new(Vec3::splat(bad), Vec3::X));
-        rays.push(Ray { t_max: bad, ..Ray::new(Vec3::ZERO, at(1)) });
+        rays.push(Ray { t_max: bad, ..Ray::new(Vec3::ZERO, scattered(1)) });
     }
+    rays
+}
+
+#[test]
+fn kernels_agree_to_the_bit() {
+    let rays = all_kinds_of_rays();
     for (count, size) in [(5, 2.0), (37, 1.5), (300, 1.0), (5000, 0.3)] {
-        let mut triangles: Vec<_> = (0..count).map(|i| triangle(at(i), size, i)).collect();
-        assert!(check_kernels(&triangles, &rays) > 100);
+        let mut triangles: Vec<_> = (0..count).map(|i| triangle(scattered(i), size, i)).collect();
+        assert!(check_kernels(&triangles, &[], &rays) > 100);
         // Each twice: which of two at the same distance is met must not depend on the number of lanes.
         if count == 5 {
             triangles.extend_from_within(..);
             triangles.extend_from_within(..);
-            check_kernels(&triangles, &rays);
+            check_kernels(&triangles, &[], &rays);
         }
+    }
+}
+
+#[test]
+fn kernels_agree_on_spheres_and_disks() {
+    let rays = all_kinds_of_rays();
+    for (count, triangles) in [(1, 0), (3, 12), (8, 0), (8, 64), (9, 12)] {
+        let triangles: Vec<_> = (0..triangles).map(|i| triangle(scattered(i), 1.0, i)).collect();
+        let sphere = |i: u32| {
+            let radius = 10f32.powi(i as i32 % 4 - 2);
+            Sphere { center: scattered(i + 40), radius, frame: Mat3::IDENTITY, flip_normals: false }
+        };
+        let disk = |i: u32| {
+            let (u_axis, v_axis) = scattered(i + 60).normalize().any_orthonormal_pair();
+            Disk { center: scattered(i + 80), u_axis, v_axis: 2.0 * v_axis, flip_normals: false }
+        };
+        let spheres: Vec<_> = (0..count).map(sphere).collect();
+        let disks: Vec<_> = (0..count).map(disk).collect();
+        let mut rounds: Vec<_> = spheres.iter().map(|s| Round::Sphere(ShapeId(1), s)).collect();
+        rounds.extend(disks.iter().map(|d| Round::Disk(ShapeId(2), d)));
+        let (_, tree) = build(&triangles, &rounds);
+        assert_eq!(tree.pieces.is_some(), rounds.len() <= FEW_ROUNDS);
+        assert!(check_kernels(&triangles, &rounds, &rays) > 100);
     }
 }
 
@@ -173,6 +236,6 @@ fn kernels_agree_on_slivers() {
                 Ray::new(origin + normal * ((i % 7) as f32 - 3.0) * 1e-6, along)
             })
             .collect();
-        assert!(check_kernels(&triangles, &rays) > 100);
+        assert!(check_kernels(&triangles, &[], &rays) > 100);
     }
 }

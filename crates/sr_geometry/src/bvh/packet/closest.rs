@@ -2,20 +2,20 @@
 
 use super::super::pieces::{HALF, Kind, Piece, Pieces};
 use super::super::simd::Lanes;
-use super::{Met, Packet, first_lanes, meet_all, see};
-use crate::{Bounds3, Hits, NO_INSTANCE, Rays};
+use super::{Met, Packet, SeenBall, first_lanes, meet_all, see};
+use crate::{Hits, NO_INSTANCE, Rays};
 
 /// Writes the closest hits of the rays from `first` on, of `count` in all, as many as there are lanes. Returns the bits of
 /// the lanes whose hits are not certain.
 #[inline(always)]
 pub(in crate::bvh) fn closest<L: Lanes>(
     lanes: L,
-    (pieces, bounds): (&Pieces, &Bounds3),
+    pieces: &Pieces,
     rays: &Rays,
     (first, count): (usize, usize),
     hits: &mut Hits,
 ) -> u32 {
-    let packet = Packet::new(lanes, rays, (first, count), (pieces, bounds));
+    let packet = Packet::new(lanes, rays, (first, count), pieces);
     let zero = lanes.splat(0.0);
     let mut closest = Closest {
         t: packet.t_max,
@@ -26,8 +26,8 @@ pub(in crate::bvh) fn closest<L: Lanes>(
         doubtful: zero,
     };
     meet_all(lanes, &mut closest, &packet, pieces);
-    closest.write(lanes, &pieces.halves, first, hits);
-    closest.uncertain(lanes, &packet) & first_lanes((count - first).min(L::COUNT))
+    closest.write(lanes, pieces, first, hits);
+    closest.uncertain(lanes, &packet, pieces.first_ball) & first_lanes((count - first).min(L::COUNT))
 }
 
 /// The closest hits so far.
@@ -60,20 +60,34 @@ impl<L: Lanes> Met<L> for Closest<L> {
         self.halves = lanes.select(hit, lanes.splat(piece.halves), self.halves);
         self.doubtful = lanes.select(doubtful, lanes.splat(1.0), self.doubtful);
     }
+
+    #[inline(always)]
+    fn meet_ball(&mut self, lanes: L, seen: &SeenBall<L>) {
+        let closer = lanes.lt(lanes.mul(seen.t, self.denominator), lanes.mul(self.t, seen.denominator));
+        let hit = lanes.and(seen.hit, closer);
+        let zero = lanes.splat(0.0);
+        self.t = lanes.select(hit, seen.t, self.t);
+        self.u = lanes.select(hit, zero, self.u);
+        self.v = lanes.select(hit, zero, self.v);
+        self.denominator = lanes.select(hit, seen.denominator, self.denominator);
+        self.halves = lanes.select(hit, lanes.splat(seen.halves), self.halves);
+        self.doubtful = seen.mark_doubtful(lanes, self.doubtful);
+    }
 }
 
 impl<L: Lanes> Closest<L> {
     /// The bits of the lanes whose hits are not certain.
     #[inline(always)]
-    fn uncertain(&self, lanes: L, packet: &Packet<L>) -> u32 {
+    fn uncertain(&self, lanes: L, packet: &Packet<L>, first_ball: f32) -> u32 {
         let zero = lanes.splat(0.0);
-        let near = lanes.and(lanes.le(zero, self.halves), lanes.le(self.t, packet.near));
+        let flat = lanes.and(lanes.le(zero, self.halves), lanes.lt(self.halves, lanes.splat(first_ball)));
+        let near = lanes.and(flat, lanes.le(self.t, packet.near));
         lanes.bits(lanes.or(near, lanes.lt(zero, self.doubtful))) | !lanes.bits(packet.ordinary)
     }
 
     /// Writes the hits from `first` on.
     #[inline(always)]
-    fn write(&self, lanes: L, halves: &[u32], first: usize, hits: &mut Hits) {
+    fn write(&self, lanes: L, pieces: &Pieces, first: usize, hits: &mut Hits) {
         let (zero, one) = (lanes.splat(0.0), lanes.splat(1.0));
         let scale = lanes.div(one, self.denominator);
         let hit = lanes.le(zero, self.halves);
@@ -82,6 +96,7 @@ impl<L: Lanes> Closest<L> {
         if lanes.bits(hit) == 0 {
             return;
         }
+        let halves = &pieces.halves;
         let (u, v) = (lanes.mul(self.u, scale), lanes.mul(self.v, scale));
         let rest = lanes.sub(one, lanes.add(u, v));
         let beyond = lanes.lt(rest, zero);
@@ -93,9 +108,11 @@ impl<L: Lanes> Closest<L> {
         let half = lanes.add(self.halves, lanes.select(beyond, lanes.splat(HALF as f32), zero));
         let b1 = pick(lanes, lanes.gather(&halves[2..], half), &weights);
         let b2 = pick(lanes, lanes.gather(&halves[3..], half), &weights);
-        lanes.store_at(b1, &mut hits.b1, first);
         // Rounding must not bring their sum above 1.
-        lanes.store_at(lanes.min(b2, lanes.sub(one, b1)), &mut hits.b2, first);
+        let b2 = lanes.min(b2, lanes.sub(one, b1));
+        let round = lanes.le(lanes.splat(pieces.first_disk), self.halves);
+        lanes.store_at(lanes.select(round, u, b1), &mut hits.b1, first);
+        lanes.store_at(lanes.select(round, v, b2), &mut hits.b2, first);
         lanes.store_bits_at(lanes.gather(halves, half), &mut hits.shape, first);
         lanes.store_bits_at(lanes.gather(&halves[1..], half), &mut hits.primitive, first);
         lanes.store_bits_at(lanes.splat(f32::from_bits(NO_INSTANCE)), &mut hits.instance, first);

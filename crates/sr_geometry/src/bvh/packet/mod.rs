@@ -1,4 +1,4 @@
-//! Meeting few triangles with many rays: a ray in each lane, one piece after another.
+//! Meeting few primitives with many rays: a ray in each lane, one piece after another.
 //!
 //! In: [`Rays`] and the [`Pieces`] of a tree. Out: what each ray hits, or whether it hits anything, for those rays whose
 //! answer is certain; the others, in a room one of twenty thousand, are for [`super::scan`]. So no ray is lost between
@@ -10,7 +10,8 @@
 //! > t = n·s / n·r, u = −e2·(s × r) / n·r, v = e1·(s × r) / n·r, with n = e1 × e2,
 //!
 //! where it is in the triangle if all of U, V, D − U − V have the sign of D = n·r (U, V: the numerators), and in the
-//! parallelogram if all of U, V, D − U, D − V have. With that sign made positive, let `least` be the smallest of them.
+//! parallelogram if all of U, V, D − U, D − V have. With that sign made positive, let `least` be the smallest of them. In
+//! a disk, whose edges are its half-axes, it is D − √(U² + V²). `ball` meets spheres.
 //!
 //! # How wrong it may be
 //!
@@ -25,6 +26,7 @@
 //! - D: 4 ε |n|₁ R: n is rounded, products are, and two sums. So is t's numerator, with S, and another ε for s: 5 ε |n|₁ S.
 //! - least: D − U − V adds up to 18 ε S R (|e1|₁ + |e2|₁) + 5 ε |n|₁ R; D − U and D − V are better. Where the sign of D is
 //!   wrong, a hit has U, V and the rest within the error of D, another 4 ε |n|₁ R.
+//! - A disk's least: the errors of U, V and D as above, and 3 ε |n|₁ R from squares, sum and root near the rim.
 //! - The parallelogram's fourth corner is off by δ: its edges are turned by 2 |δ|₁ S R at most, U and V at the corner by
 //!   2 |e|∞ |δ|₁ R ≤ 4 |δ|₁ S R.
 //!
@@ -35,24 +37,26 @@
 //! than rounding errors may be lost, here as in [`super::sheared`].
 
 mod any;
+mod ball;
 mod closest;
 #[cfg(test)]
 mod tests;
 
-use super::pieces::{Kind, PARALLELOGRAM, Piece, Pieces, TRIANGLE};
+use super::pieces::{DISK, Kind, PARALLELOGRAM, Piece, Pieces, TRIANGLE};
 use super::simd::Lanes;
-use crate::{BATCH, Bounds3, Rays};
+use crate::{BATCH, Rays};
 
 pub(super) use any::any;
+pub(super) use ball::Ball;
 pub(super) use closest::closest;
+
+use ball::{SeenBall, Speed};
 
 const _: () = assert!(BATCH.is_multiple_of(super::WIDE), "packets divide batches");
 
-/// Between these, sizes of rays leave room for products: neither overflows, and what vanishes is less than any slack.
-const SMALL: f32 = 1e-30;
-const LARGE: f32 = 1e30;
-/// [`SMALL`] for products of two sizes, which are multiplied by slacks.
+/// Between these, products of two sizes may be multiplied by slacks.
 const SMALL_AREA: f32 = 1e-24;
+const LARGE_AREA: f32 = 1e30;
 
 /// A ray in each lane.
 struct Packet<L: Lanes> {
@@ -60,6 +64,8 @@ struct Packet<L: Lanes> {
     /// The direction, reversed.
     back: [L::F; 3],
     t_max: L::F,
+    /// R.
+    longest: L::F,
     /// Heights that are larger are surely positive.
     near: L::F,
     /// S R.
@@ -71,12 +77,8 @@ struct Packet<L: Lanes> {
 impl<L: Lanes> Packet<L> {
     /// The rays from `first` on; those from `count` on end where they start.
     #[inline(always)]
-    fn new(
-        lanes: L,
-        rays: &Rays,
-        (first, count): (usize, usize),
-        (pieces, bounds): (&Pieces, &Bounds3),
-    ) -> Self {
+    fn new(lanes: L, rays: &Rays, (first, count): (usize, usize), pieces: &Pieces) -> Self {
+        let bounds = &pieces.bounds;
         let zero = lanes.splat(0.0);
         let (o, d) = (&rays.origin, &rays.direction);
         let origin = [lanes.load_at(&o.x, first), lanes.load_at(&o.y, first), lanes.load_at(&o.z, first)];
@@ -90,8 +92,8 @@ impl<L: Lanes> Packet<L> {
             back[axis] = lanes.sub(zero, along[axis]);
         }
         let size = lanes.mul(reach, longest);
-        let [large, small] = [lanes.splat(LARGE), lanes.splat(SMALL)];
-        let fits = lanes.le(lanes.mul(size, lanes.splat(pieces.slack)), large);
+        let [small, large] = [lanes.splat(pieces.lengths[0]), lanes.splat(pieces.lengths[1])];
+        let fits = lanes.le(lanes.mul(size, lanes.splat(pieces.slack)), lanes.splat(LARGE_AREA));
         let fits = lanes.and(fits, lanes.le(lanes.max(reach, longest), large));
         let fits = lanes.and(fits, lanes.le(small, lanes.min(reach, longest)));
         let present = lanes.mask(first_lanes(count - first));
@@ -99,6 +101,7 @@ impl<L: Lanes> Packet<L> {
             origin,
             back,
             t_max: lanes.select(present, lanes.load_at(&rays.t_max, first), zero),
+            longest,
             near: lanes.mul(reach, lanes.splat(pieces.near)),
             size,
             ordinary: lanes.and(fits, lanes.le(lanes.splat(SMALL_AREA), size)),
@@ -146,8 +149,12 @@ fn see<L: Lanes, const KIND: Kind>(lanes: L, packet: &Packet<L>, piece: &Piece) 
     }
     let (t, u, v) = (lanes.flip(t, sign), lanes.flip(u, sign), lanes.flip(v, sign));
     let denominator = lanes.abs(sign);
-    let most = if KIND == TRIANGLE { lanes.add(u, v) } else { lanes.max(u, v) };
-    let least = lanes.min(lanes.min(u, v), lanes.sub(denominator, most));
+    let least = if KIND == DISK {
+        lanes.sub(denominator, lanes.sqrt(lanes.add(lanes.mul(u, u), lanes.mul(v, v))))
+    } else {
+        let most = if KIND == TRIANGLE { lanes.add(u, v) } else { lanes.max(u, v) };
+        lanes.min(lanes.min(u, v), lanes.sub(denominator, most))
+    };
     Seen { t, u, v, denominator, least }
 }
 
@@ -171,11 +178,12 @@ fn dot_2<L: Lanes>(lanes: L, a: [f32; 2], b: [L::F; 2]) -> L::F {
 /// What is known of a packet's hits.
 trait Met<L: Lanes> {
     fn meet<const KIND: Kind>(&mut self, lanes: L, packet: &Packet<L>, piece: &Piece);
+    fn meet_ball(&mut self, lanes: L, seen: &SeenBall<L>);
 }
 
 #[inline(always)]
 fn meet_all<L: Lanes>(lanes: L, met: &mut impl Met<L>, packet: &Packet<L>, pieces: &Pieces) {
-    let [x, y, z, parallelograms, triangles] = &pieces.kinds;
+    let [x, y, z, parallelograms, triangles, disks] = &pieces.kinds;
     for piece in x {
         met.meet::<0>(lanes, packet, piece);
     }
@@ -190,5 +198,16 @@ fn meet_all<L: Lanes>(lanes: L, met: &mut impl Met<L>, packet: &Packet<L>, piece
     }
     for piece in triangles {
         met.meet::<TRIANGLE>(lanes, packet, piece);
+    }
+    for piece in disks {
+        met.meet::<DISK>(lanes, packet, piece);
+    }
+    if !pieces.balls.is_empty() {
+        let speed = Speed::new(lanes, packet);
+        for ball in &pieces.balls {
+            if let Some(seen) = ball.see(lanes, packet, &speed) {
+                met.meet_ball(lanes, &seen);
+            }
+        }
     }
 }

@@ -1,11 +1,11 @@
 //! What a packet says of a piece against `f64`.
 
-use glam::{DVec3, Quat, Vec3};
+use glam::{DVec3, Mat3, Quat, Vec3};
 
 use super::super::simd::{Lanes, Portable};
 use super::*;
-use crate::bvh::{PrimRef, WIDTH};
-use crate::{Ray, ShapeId};
+use crate::bvh::{PrimRef, Round, WIDTH};
+use crate::{Bounds3, Disk, Ray, ShapeId, Sphere};
 
 /// Numbers in [-1, 1) by SplitMix64 (Steele, Lea & Flood 2014).
 struct Random(u64);
@@ -54,14 +54,12 @@ fn check<const KIND: Kind>(triangles: &[[Vec3; 3]], rays: &[Ray], tally: &mut Ta
     let bounds = |t: &[Vec3; 3]| t.iter().fold(Bounds3::EMPTY, |bounds, &v| bounds.with(v));
     let prim = |(i, t)| PrimRef { bounds: bounds(t), shape: 0, primitive: i as u32 };
     let prims: Vec<_> = triangles.iter().enumerate().map(prim).collect();
-    let around = prims.iter().fold(Bounds3::EMPTY, |all, p| all.union(p.bounds));
-    let extent = around.extent().max_element();
     // Rounding may have left a line.
-    let Some(pieces) = Pieces::new(&prims, extent, |ShapeId(_), i| triangles[i as usize]) else { return };
+    let Some(pieces) = Pieces::new(&prims, |ShapeId(_), i| triangles[i as usize], |_| None) else { return };
     let [piece] = &pieces.kinds[KIND][..] else { return };
     let mut batch = Rays::NONE;
     rays.iter().enumerate().for_each(|(i, ray)| batch.set(i, ray));
-    let packet = Packet::new(Portable, &batch, (0, WIDTH), (&pieces, &around));
+    let packet = Packet::new(Portable, &batch, (0, WIDTH), &pieces);
     assert_eq!(Portable.bits(packet.ordinary), 0xff);
     let seen = see::<_, KIND>(Portable, &packet, piece);
     for (lane, ray) in rays.iter().enumerate() {
@@ -113,4 +111,130 @@ fn what_is_sure_is_true() {
         assert!(hits.min(misses).min(doubtful) > 10_000, "{hits} hits, {misses} misses, {doubtful} doubtful");
         assert!(saved > 100, "the test can fail: {saved}");
     }
+}
+
+/// The t at which a ray meets a sphere, in `f64`, and by how much it does, in parts of the sizes.
+fn meet_sphere(ray: &Ray, sphere: &Sphere) -> (Option<f64>, f64) {
+    let (s, d) = (ray.origin.as_dvec3() - sphere.center.as_dvec3(), ray.direction.as_dvec3());
+    let (radius, b, a) = (f64::from(sphere.radius), s.dot(d), d.length_squared());
+    let line = (radius * radius - (s - b / a * d).length_squared()) / radius.max(s.length()).powi(2);
+    let c = (s.length() - radius) * (s.length() + radius);
+    let q = -b - (a * (radius * radius - (s - b / a * d).length_squared())).sqrt().copysign(b);
+    let t = [q / a, c / q].into_iter().filter(|&t| t > 0.0).reduce(f64::min);
+    (t, line.abs().min(c.abs() / radius.max(s.length()).powi(2)))
+}
+
+/// As [`Tally`], of spheres: what is sure of them, and whether rays that leave them ever are in doubt.
+#[test]
+fn what_is_sure_of_spheres_is_true() {
+    let mut random = Random(62);
+    let (mut hits, mut misses, mut doubtful, mut worst) = (0, 0, 0, 0f64);
+    for i in 0..100_000 {
+        let radius = 10f32.powi(i % 9 - 5);
+        let center = radius * [0.0, 1.0, 30.0, 1000.0][(i / 9 % 4) as usize] * random.vector();
+        let sphere = Sphere { center, radius, frame: Mat3::IDENTITY, flip_normals: false };
+        let prim = PrimRef { bounds: sphere.bounds(), shape: PrimRef::OTHER, primitive: 0 };
+        let round_of = |_| Some(Round::Sphere(ShapeId(7), &sphere));
+        let pieces = Pieces::new(&[prim], |_, _| [Vec3::ZERO; 3], round_of).expect("it fits");
+        let mut batch = Rays::NONE;
+        let rays: [Ray; WIDTH] = std::array::from_fn(|lane| {
+            let out = random.vector().normalize();
+            // Beside the surface or anywhere, along it, past its rim or anywhere.
+            let away = if lane % 2 == 0 {
+                10f32.powf(4.0 * random.number() - 4.0)
+            } else {
+                [30.0, 3e4][lane / 2 % 2]
+            };
+            let origin = center + out * radius * (1.0 + away * random.number());
+            let rim = out.cross(random.vector()).normalize();
+            let beside = 1.0 + random.number() * 10f32.powf(3.0 * random.number() - 4.0);
+            let direction = match lane / 2 {
+                0 => random.vector(),
+                1 => rim + random.number() * 0.1 * out,
+                _ => center + radius * beside * rim - origin,
+            };
+            Ray::new(origin, direction.normalize() * 10f32.powf(3.0 * random.number()))
+        });
+        rays.iter().enumerate().for_each(|(i, ray)| batch.set(i, ray));
+        let packet = Packet::new(Portable, &batch, (0, WIDTH), &pieces);
+        assert_eq!(Portable.bits(packet.ordinary), 0xff, "{rays:?}");
+        let seen = pieces.balls[0].see(Portable, &packet, &Speed::new(Portable, &packet));
+        for (lane, ray) in rays.iter().enumerate() {
+            let (expected, margin) = meet_sphere(ray, &sphere);
+            let what = || format!("{sphere:?}, {ray:?}: expected {expected:?}");
+            let Some(seen) = seen.as_ref() else {
+                misses += 1;
+                assert!(expected.is_none() || margin < 1e-13, "{}", what());
+                continue;
+            };
+            if seen.hit[lane] {
+                hits += 1;
+                let t = f64::from(seen.t[lane]) / f64::from(seen.denominator[lane]);
+                let error = expected.map_or(f64::INFINITY, |expected| (t / expected - 1.0).abs());
+                assert!(error < 6.5e-5, "{}, not {t}", what());
+                worst = worst.max(error);
+            } else if seen.mark_doubtful(Portable, [0.0; WIDTH])[lane] > 0.0 {
+                doubtful += 1;
+            } else {
+                misses += 1;
+                assert!(expected.is_none() || margin < 1e-13, "{}", what());
+            }
+        }
+    }
+    assert!(hits.min(misses).min(doubtful) > 100_000, "{hits} hits, {misses} misses, {doubtful} doubtful");
+    assert!(worst > 5e-6, "the test can fail: {worst}");
+}
+
+#[test]
+fn a_disk_is_where_its_coordinates_are() {
+    let mut random = Random(63);
+    let (mut hits, mut misses, mut doubtful) = (0, 0, 0);
+    for i in 0..40_000 {
+        let size = 10f32.powi(i % 9 - 4);
+        let turn = random.rotation();
+        let disk = Disk {
+            center: size * [0.0, 1.0, 30.0][(i / 9 % 3) as usize] * random.vector(),
+            u_axis: size * (turn * Vec3::X),
+            // Not quite perpendicular.
+            v_axis: size * 10f32.powi(-(i % 3)) * (turn * Vec3::new(5e-4 * random.number(), 1.0, 0.0)),
+            flip_normals: false,
+        };
+        let prim = PrimRef { bounds: disk.bounds(), shape: PrimRef::OTHER, primitive: 0 };
+        let round_of = |_| Some(Round::Disk(ShapeId(7), &disk));
+        let pieces = Pieces::new(&[prim], |_, _| [Vec3::ZERO; 3], round_of).expect("it fits");
+        let mut batch = Rays::NONE;
+        let rays: [Ray; WIDTH] = std::array::from_fn(|lane| {
+            let (y, x) = (4.0 * random.number()).sin_cos();
+            let reach =
+                1.0 + random.number() * if lane == 0 { 1.0 } else { 10f32.powf(3.0 * random.number() - 4.5) };
+            let target = disk.center + reach * (x * disk.u_axis + y * disk.v_axis);
+            let origin = target + size * 10f32.powf(2.0 * random.number()) * random.vector();
+            Ray::new(origin, target - origin)
+        });
+        rays.iter().enumerate().for_each(|(i, ray)| batch.set(i, ray));
+        let packet = Packet::new(Portable, &batch, (0, WIDTH), &pieces);
+        let piece = &pieces.kinds[DISK][0];
+        let seen = see::<_, DISK>(Portable, &packet, piece);
+        for (lane, ray) in rays.iter().enumerate() {
+            let (least, slack) = (seen.least[lane], packet.size[lane] * piece.slack);
+            let met = disk.intersect(ray);
+            if least > slack && seen.t[lane] > packet.near[lane] {
+                hits += 1;
+                let (t, at) = met.unwrap_or_else(|| panic!("{disk:?}, {ray:?}: not met"));
+                let of = |x: f32| x / seen.denominator[lane];
+                assert!(
+                    (of(seen.t[lane]) / t - 1.0).abs() < 1e-2
+                        && of(seen.u[lane]).hypot(of(seen.v[lane])) <= 1.0
+                );
+                let allowed = 1e-6 + slack / seen.denominator[lane];
+                assert!((of(seen.u[lane]) - at.x).abs().max((of(seen.v[lane]) - at.y).abs()) < allowed);
+            } else if least < -slack {
+                misses += 1;
+                assert_eq!(met, None, "{disk:?}, {ray:?}");
+            } else {
+                doubtful += 1;
+            }
+        }
+    }
+    assert!(hits.min(misses).min(doubtful) > 10_000, "{hits} hits, {misses} misses, {doubtful} doubtful");
 }

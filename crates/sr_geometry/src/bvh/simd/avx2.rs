@@ -117,6 +117,10 @@ impl Lanes for Avx2 {
         avx2!(_mm256_andnot_ps(_mm256_set1_ps(-0.0), x))
     }
     #[inline(always)]
+    fn sqrt(self, x: Self::F) -> Self::F {
+        avx2!(_mm256_sqrt_ps(x))
+    }
+    #[inline(always)]
     fn flip(self, x: Self::F, sign: Self::F) -> Self::F {
         avx2!(_mm256_xor_ps(x, _mm256_and_ps(sign, _mm256_set1_ps(-0.0))))
     }

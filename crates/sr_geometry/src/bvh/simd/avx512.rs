@@ -112,6 +112,10 @@ impl Lanes for Avx512 {
         avx512!(_mm512_abs_ps(x))
     }
     #[inline(always)]
+    fn sqrt(self, x: Self::F) -> Self::F {
+        avx512!(_mm512_sqrt_ps(x))
+    }
+    #[inline(always)]
     fn flip(self, x: Self::F, sign: Self::F) -> Self::F {
         avx512!({
             let (x, sign, bit) =

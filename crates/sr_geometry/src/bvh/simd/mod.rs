@@ -52,6 +52,8 @@ pub(super) trait Lanes: Copy {
     fn min(self, a: Self::F, b: Self::F) -> Self::F;
     fn max(self, a: Self::F, b: Self::F) -> Self::F;
     fn abs(self, x: Self::F) -> Self::F;
+    /// Correctly rounded.
+    fn sqrt(self, x: Self::F) -> Self::F;
     /// x[i], negated where `sign[i]` has its sign bit set.
     fn flip(self, x: Self::F, sign: Self::F) -> Self::F;
     /// a[i] ≤ b[i]; false where either is NaN.

@@ -83,6 +83,10 @@ impl Lanes for Portable {
         each(|i| x[i].abs())
     }
     #[inline(always)]
+    fn sqrt(self, x: Self::F) -> Self::F {
+        each(|i| x[i].sqrt())
+    }
+    #[inline(always)]
     fn flip(self, x: Self::F, sign: Self::F) -> Self::F {
         each(|i| f32::from_bits(x[i].to_bits() ^ (sign[i].to_bits() & 1 << 31)))
     }
