@@ -2,9 +2,8 @@
 //!
 //! In: [`PrimRef`]s, a box and an identity each. Out: [`Bvh`], flat arrays of nodes and of leaves of up to eight
 //! triangles, and a [`Tree`] per call. `build` decides the tree, `traverse` walks it, `interleave` does so with several
-//! rays in turn, `scan` meets the triangles of trees that are not worth a node, `packet` small trees with a ray in each lane;
-//! `dispatch` chooses the instruction set.
-//! Several trees (the world's and the groups') share the arrays.
+//! rays in turn, `scan` meets the triangles of trees that are not worth a node, `packet` meets small
+//! trees with a ray in each lane; `dispatch` chooses the instruction set. Several trees (the world's and the groups') share the arrays.
 //!
 //! Invariant: every tree is at most [`MAX_DEPTH`] nodes deep, so the traversal stack cannot overflow.
 
@@ -47,9 +46,9 @@ const WIDE: usize = 16;
 /// Up to this many triangles get no tree: meeting all of them is faster (see docs/performance.md).
 const FEW: usize = 64;
 
-/// Packets meet all of up to this many triangles, and of up to this many spheres and disks.
+/// Packets meet all of up to this many triangles, and of up to this many spheres and disks (see docs/performance.md).
 const FEW_FLATS: usize = 64;
-const FEW_ROUNDS: usize = 16;
+const FEW_ROUNDS: usize = 64;
 
 /// Bytes of nodes and leaves from which traversal prefetches: what a second-level cache surely does not hold.
 const PREFETCH_FROM: usize = 1 << 20;
