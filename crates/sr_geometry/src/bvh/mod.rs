@@ -2,8 +2,8 @@
 //!
 //! In: [`PrimRef`]s, a box and an identity each. Out: [`Bvh`], flat arrays of nodes and of leaves of up to eight
 //! triangles, and a [`Tree`] per call. `build` decides the tree, `traverse` walks it, `interleave` does so with several
-//! rays in turn, `scan` meets the triangles of trees that are not worth a node, `packet` meets small
-//! trees with a ray in each lane; `dispatch` chooses the instruction set. Several trees (the world's and the groups') share the arrays.
+//! rays in turn, `scan` meets the triangles of trees that are not worth a node, `packet` meets small trees with a ray in
+//! each lane; `dispatch` chooses the instruction set. Several trees (the world's and the groups') share the arrays.
 //!
 //! Invariant: every tree is at most [`MAX_DEPTH`] nodes deep, so the traversal stack cannot overflow.
 

@@ -20,8 +20,9 @@
 //!
 //! A hit is certain if the signs that choose its formula are, and C and W within [`KAPPA`]: t is then within some 6e-5 of
 //! its value, which is less than by how much a shadow ray ends before its target. The point on the sphere is found again
-//! from t, so it is no worse for that. What is not certain, mostly the rim, is for [`Sphere::intersect`]; rays that leave
-//! the sphere are not: they start outside or inside by more than the error of C.
+//! from t, so it is no worse for that. What is not certain, mostly the rim, is for [`Sphere::intersect`]: one of a hundred
+//! rays where half are aimed at small spheres. Rays that leave the sphere outwards are certain, as they start outside by
+//! more than the error of C.
 
 use super::super::simd::Lanes;
 use super::Packet;

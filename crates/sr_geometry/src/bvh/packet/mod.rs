@@ -1,7 +1,7 @@
 //! Meeting few primitives with many rays: a ray in each lane, one piece after another.
 //!
 //! In: [`Rays`] and the [`Pieces`] of a tree. Out: what each ray hits, or whether it hits anything, for those rays whose
-//! answer is certain; the others, in a room one of twenty thousand, are for [`super::scan`]. So no ray is lost between
+//! answer is certain; the others, in a room one of twenty thousand, are met again as single rays. So no ray is lost between
 //! neighbours: a ray that a packet decides is clear of all edges, by more than rounding errors.
 //!
 //! The test is Möller & Trumbore's (1997, "Fast, minimum storage ray/triangle intersection"), as triple products. With

@@ -124,7 +124,6 @@ fn meet_sphere(ray: &Ray, sphere: &Sphere) -> (Option<f64>, f64) {
     (t, line.abs().min(c.abs() / radius.max(s.length()).powi(2)))
 }
 
-/// As [`Tally`], of spheres: what is sure of them, and whether rays that leave them ever are in doubt.
 #[test]
 fn what_is_sure_of_spheres_is_true() {
     let mut random = Random(62);
