@@ -49,6 +49,10 @@ def main(arguments):
     check_tools()
     if arguments[0] == "test":
         return test(arguments[1:])
+    for name in arguments[1:]:
+        if name.endswith(".xml") and not Path(name).exists():
+            # Said at once, and not after a build of some minutes.
+            sys.exit(f"dev.py: there is no file {name}; our own scenes are in {ROOT / 'scenes'}")
     build()
     if arguments[0] == "build":
         return 0

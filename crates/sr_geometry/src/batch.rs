@@ -133,14 +133,20 @@ impl Hits {
     /// One of them.
     #[inline(always)]
     pub fn get(&self, i: usize) -> Option<Hit> {
-        (self.t[i] < f32::INFINITY).then(|| Hit {
+        (self.t[i] < f32::INFINITY).then(|| self.at(i))
+    }
+
+    /// One of them; the ray must have hit something.
+    #[inline(always)]
+    pub fn at(&self, i: usize) -> Hit {
+        Hit {
             t: self.t[i],
             b1: self.b1[i],
             b2: self.b2[i],
             shape: ShapeId(self.shape[i]),
             primitive: self.primitive[i],
             instance: self.instance[i],
-        })
+        }
     }
 
     /// Replaces one of them.

@@ -76,7 +76,9 @@ impl Located {
         // Rounding here, and that of the next ray's test of a triangle of this size.
         let size = e1.abs().max(e2.abs()).max_element();
         let p_error = ROUNDING * (2.0 * p.abs() + 4.0 * (m1.abs() + m2.abs()) + 4.0 * size);
-        let ng = e1.cross(e2).normalize_or_zero();
+        // Edges of any size, so that their product neither overflows nor vanishes.
+        let per_size = 1.0 / size;
+        let ng = (e1 * per_size).cross(e2 * per_size).normalize_or_zero();
         Self { p, p_error, ng, ns: ng, uv: Vec2::new(b1, b2) }
     }
 
@@ -159,7 +161,7 @@ impl Geometry {
         }
     }
 
-    /// The surfaces at the hits of the first `count` rays. What stands where a ray hits nothing means nothing.
+    /// The surfaces at the hits of the first `count` rays, which must all have hit something.
     #[inline(always)]
     pub fn surfaces(&self, rays: &Rays, hits: &Hits, count: usize, surfaces: &mut Surfaces) {
         let count = count.min(BATCH);
@@ -167,7 +169,7 @@ impl Geometry {
         // Those that are no triangles in world space.
         let (mut others, mut other_count) = ([0_u32; BATCH], 0);
         for i in 0..count {
-            let Some(hit) = hits.get(i) else { continue };
+            let hit = hits.at(i);
             let Some(corners) = self.world_corners(&hit) else {
                 others[other_count] = i as u32;
                 other_count += 1;
@@ -199,9 +201,7 @@ impl Geometry {
         }
         for &i in &others[..other_count] {
             let i = i as usize;
-            if let Some(hit) = hits.get(i) {
-                surfaces.set(i, &self.surface_of_other(&rays.get(i), &hit));
-            }
+            surfaces.set(i, &self.surface_of_other(&rays.get(i), &hits.at(i)));
         }
     }
 

@@ -1,14 +1,18 @@
 //! Hot code, compiled for the instruction sets that processors may have, and run with the best that this one has.
 
+/// Proof that this processor has what a variant of [`Isa`] names: only [`Isa::available`] makes one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Detected(());
+
 /// An instruction set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Isa {
     /// AVX-512 with the parts F, VL, DQ and BW, and all of [`Isa::Avx2`].
     #[cfg(target_arch = "x86_64")]
-    Avx512,
+    Avx512(Detected),
     /// AVX2, FMA, BMI1, BMI2 and LZCNT.
     #[cfg(target_arch = "x86_64")]
-    Avx2,
+    Avx2(Detected),
     /// What every processor of the architecture has.
     Baseline,
 }
@@ -44,23 +48,23 @@ impl Isa {
             && is_x86_feature_detected!("avx512bw");
         let all = [
             #[cfg(target_arch = "x86_64")]
-            avx512.then_some(Self::Avx512),
+            avx512.then_some(Self::Avx512(Detected(()))),
             #[cfg(target_arch = "x86_64")]
-            avx2.then_some(Self::Avx2),
+            avx2.then_some(Self::Avx2(Detected(()))),
             Some(Self::Baseline),
         ];
         all.into_iter().flatten()
     }
 
-    /// Runs `work`. Values other than the baseline come from [`Isa::available`] alone, so the processor has them.
+    /// Runs `work`.
     pub fn run<W: Work>(self, work: W) -> W::Out {
         match self {
-            // SAFETY: the features were detected.
+            // SAFETY: a `Detected` in this variant is the proof that the features are there.
             #[cfg(target_arch = "x86_64")]
-            Self::Avx512 => unsafe { run_avx512(work) },
-            // SAFETY: the features were detected.
+            Self::Avx512(Detected(())) => unsafe { run_avx512(work) },
+            // SAFETY: as above.
             #[cfg(target_arch = "x86_64")]
-            Self::Avx2 => unsafe { run_avx2(work) },
+            Self::Avx2(Detected(())) => unsafe { run_avx2(work) },
             Self::Baseline => work.run(),
         }
     }

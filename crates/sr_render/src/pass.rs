@@ -172,7 +172,7 @@ impl<I: Integrator, Q: Sequence> Work for Tile<'_, I, Q> {
                     return rejected;
                 }
                 sampler.camera_rays(rays, at..at + sums.len() as u32, start, per_pixel);
-                sampler.integrator.trace(sampler.scene, rays, workspace, samples);
+                sampler.integrator.trace(sampler.scene, rays, workspace, samples, cancel);
                 for (samples, sums) in samples[..rays.count].chunks(per_pixel as usize).zip(&mut *sums) {
                     rejected += add_samples(samples, start, tree);
                     if start + per_pixel == first + len {

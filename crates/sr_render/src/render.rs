@@ -25,7 +25,8 @@ pub struct RenderSettings {
     pub height: u32,
     /// Longest path in edges: 1 emitters only, 2 direct light; `None` is unbounded.
     pub max_depth: Option<u32>,
-    /// Edges before Russian roulette may end a path; `None` never plays it.
+    /// Edges before Russian roulette may end a path; `None` does not play it before the 1024th
+    /// ([`crate::integrator::LATEST_ROULETTE`]).
     pub roulette_depth: Option<u32>,
     /// Are lights black where the camera sees them directly?
     pub hide_emitters: bool,

@@ -9,7 +9,11 @@ const WORTHWHILE: usize = 4 << 20;
 
 /// Makes room for `additional` elements, in large pages where the system has any to give.
 pub(super) fn reserve<T>(array: &mut Vec<T>, additional: usize) {
-    array.reserve_exact(additional);
+    match array.is_empty() {
+        true => array.reserve_exact(additional),
+        // Many small trees, one after the other: room for more than the next one.
+        false => array.reserve(additional),
+    }
     advise(array.spare_capacity_mut());
 }
 

@@ -10,6 +10,8 @@ mod path;
 mod roulette;
 mod strategies;
 
+use std::sync::atomic::AtomicBool;
+
 use glam::Vec3;
 use sr_geometry::{BATCH, Rays, Surface};
 use sr_sampling::{Cursor, SampleId, Sequence};
@@ -32,13 +34,14 @@ pub trait Integrator: Sync {
     fn workspace<Q: Sequence>(&self, sequence: Q) -> Self::Workspace<Q>;
 
     /// Writes a sample for each ray of a batch. Each depends on its ray and its uniforms alone, which it takes at
-    /// dimensions from [`FIRST_DIMENSION`] on.
+    /// dimensions from [`FIRST_DIMENSION`] on. Stops soon after `cancel` is set, leaving samples unfinished.
     fn trace<Q: Sequence>(
         &self,
         scene: &Scene,
         rays: &CameraRays<Q>,
         workspace: &mut Self::Workspace<Q>,
         samples: &mut [PathSample; BATCH],
+        cancel: &AtomicBool,
     );
 }
 
@@ -74,15 +77,26 @@ impl<Q: Sequence> CameraRays<Q> {
 /// Dimensions below this one belong to the camera: two for the film, two for the lens.
 pub const FIRST_DIMENSION: u32 = 4;
 
+/// From this many edges on, Russian roulette is always played, so that every path ends. That changes no expectation.
+pub const LATEST_ROULETTE: u32 = 1024;
+
 /// How long paths are, and what the camera sees of the lights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PathLimits {
     /// Longest path in edges; `u32::MAX` is unbounded.
     pub max_depth: u32,
-    /// Edges before Russian roulette; `u32::MAX` is never.
+    /// Edges before Russian roulette; it is played from [`LATEST_ROULETTE`] on in any case.
     pub roulette_depth: u32,
     /// Are lights black where the camera sees them directly?
     pub hide_emitters: bool,
+}
+
+impl PathLimits {
+    /// Is Russian roulette played at this depth?
+    #[inline]
+    fn plays_roulette(&self, depth: u32) -> bool {
+        depth >= self.roulette_depth.min(LATEST_ROULETTE)
+    }
 }
 
 /// What one path brought home.

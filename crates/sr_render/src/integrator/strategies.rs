@@ -9,6 +9,8 @@
 //!
 //! Where a surface has delta lobes, half of the samples of a technique without `bsdf` are drawn by it.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use glam::{Vec2, Vec3};
 use sr_bsdf::AnyBsdf;
 use sr_geometry::{BATCH, Hit, Ray, Surface};
@@ -160,15 +162,22 @@ impl Integrator for StrategyTracer {
         rays: &CameraRays<Q>,
         (): &mut (),
         samples: &mut [PathSample; BATCH],
+        cancel: &AtomicBool,
     ) {
         for (i, sample) in samples[..rays.count].iter_mut().enumerate() {
-            *sample = self.li(scene, rays.rays.get(i), &mut rays.cursor(i));
+            *sample = self.li(scene, rays.rays.get(i), &mut rays.cursor(i), cancel);
         }
     }
 }
 
 impl StrategyTracer {
-    fn li<Q: Sequence>(&self, scene: &Scene, mut ray: Ray, u: &mut Cursor<'_, Q>) -> PathSample {
+    fn li<Q: Sequence>(
+        &self,
+        scene: &Scene,
+        mut ray: Ray,
+        u: &mut Cursor<'_, Q>,
+        cancel: &AtomicBool,
+    ) -> PathSample {
         let mut path = PathSample::default();
         let mut beta = Rgb::ONE;
         let mut eta = 1.0;
@@ -178,17 +187,17 @@ impl StrategyTracer {
             let vertex = arrival.vertex();
             path.li += beta * le;
             depth += 1;
-            if depth >= self.limits.max_depth {
+            if depth >= self.limits.max_depth || cancel.load(Ordering::Relaxed) {
                 break;
             }
-            let dimension = FIRST_DIMENSION + (depth - 1) * DIMENSIONS_PER_VERTEX;
+            let dimension = FIRST_DIMENSION.wrapping_add((depth - 1).wrapping_mul(DIMENSIONS_PER_VERTEX));
             let Some((step, next_share)) = self.scatter(scene, &vertex, dimension, u, &mut path.li, beta)
             else {
                 break;
             };
             beta *= step.weight;
             eta *= step.eta;
-            if depth >= self.limits.roulette_depth {
+            if self.limits.plays_roulette(depth) {
                 u.seek(dimension + DIMENSIONS_PER_VERTEX - 4);
                 let Some(factor) = survive(beta, eta, u.next_1d()) else { break };
                 beta *= factor;

@@ -17,8 +17,8 @@ pub(crate) struct LightSamples {
     pub pdf: [f32; BATCH],
     /// The points on the lights, but for those infinitely far away.
     pub target: Vec3s,
-    /// How far along the direction to the light shadow rays go: 1, or infinitely far.
-    pub t_end: [f32; BATCH],
+    /// 1 for a light infinitely far away, else 0.
+    pub is_far: [u32; BATCH],
     light: [u32; BATCH],
     uv: Vec2s,
     /// What samples are drawn from together.
@@ -32,7 +32,7 @@ impl LightSamples {
         wi: Vec3s::splat(Vec3::Z),
         pdf: [0.0; BATCH],
         target: Vec3s::splat(Vec3::ZERO),
-        t_end: [1.0; BATCH],
+        is_far: [0; BATCH],
         light: [0; BATCH],
         uv: Vec2s::splat(Vec2::ZERO),
         pieces: Pieces::NONE,
@@ -42,9 +42,9 @@ impl LightSamples {
     /// The sample from point `i`. There must be one.
     #[inline(always)]
     pub fn get(&self, i: usize) -> LightSample {
-        let target = match self.t_end[i] {
-            f32::INFINITY => Target::Infinity,
-            _ => Target::Point(self.target.get(i)),
+        let target = match self.is_far[i] {
+            0 => Target::Point(self.target.get(i)),
+            _ => Target::Infinity,
         };
         let (wi, pdf) = (self.wi.get(i), self.pdf[i]);
         LightSample { wi, pdf, target, light: LightId(self.light[i]), uv: self.uv.get(i) }
@@ -56,7 +56,7 @@ impl LightSamples {
         let Some(s) = sample else { return };
         self.wi.set(i, s.wi);
         self.pdf[i] = s.pdf;
-        set_target(&mut self.target, &mut self.t_end, i, s.target);
+        set_target(&mut self.target, &mut self.is_far, i, s.target);
         self.light[i] = s.light.0;
         self.uv.set(i, s.uv);
     }
@@ -70,8 +70,8 @@ pub(crate) struct DeltaSamples {
     pub radiance: Vec3s,
     /// The points on the lights, but for those infinitely far away.
     pub target: Vec3s,
-    /// As in [`LightSamples`].
-    pub t_end: [f32; BATCH],
+    /// 1 for a light infinitely far away, else 0.
+    pub is_far: [u32; BATCH],
 }
 
 impl DeltaSamples {
@@ -79,7 +79,7 @@ impl DeltaSamples {
         wi: Vec3s::splat(Vec3::Z),
         radiance: Vec3s::splat(Rgb::ZERO),
         target: Vec3s::splat(Vec3::ZERO),
-        t_end: [1.0; BATCH],
+        is_far: [0; BATCH],
     };
 
     /// Replaces the sample from point `i`.
@@ -89,18 +89,18 @@ impl DeltaSamples {
         let Some(s) = sample else { return };
         self.wi.set(i, s.wi);
         self.radiance.set(i, s.radiance);
-        set_target(&mut self.target, &mut self.t_end, i, s.target);
+        set_target(&mut self.target, &mut self.is_far, i, s.target);
     }
 }
 
 #[inline(always)]
-fn set_target(targets: &mut Vec3s, t_end: &mut [f32; BATCH], i: usize, target: Target) {
+fn set_target(targets: &mut Vec3s, is_far: &mut [u32; BATCH], i: usize, target: Target) {
     match target {
         Target::Point(p) => {
             targets.set(i, p);
-            t_end[i] = 1.0;
+            is_far[i] = 0;
         }
-        Target::Infinity => t_end[i] = f32::INFINITY,
+        Target::Infinity => is_far[i] = 1,
     }
 }
 
@@ -173,7 +173,7 @@ impl Lights {
         samples: &mut LightSamples,
     ) {
         let count = count.min(BATCH);
-        let LightSamples { wi, pdf, target, t_end, light, pieces, others, .. } = samples;
+        let LightSamples { wi, pdf, target, is_far, light, pieces, others, .. } = samples;
         let (mut balls, mut other_count) = (0, 0);
         for i in 0..count {
             let mut is_piece = false;
@@ -192,7 +192,7 @@ impl Lights {
             wi.set(i, seen.wi);
             pdf[i] = seen.pdf;
             target.set(i, seen.p);
-            t_end[i] = 1.0;
+            is_far[i] = 0;
             light[i] = pieces.light[i];
         }
         if balls > 0 {

@@ -1,6 +1,5 @@
 //! Paths come to surfaces: what shines there is added, and the scattering models are found.
 
-use glam::Vec3;
 use sr_geometry::{BATCH, Hit};
 use sr_sampling::{Sequence, power_weight};
 use sr_scene::{ColorInput, Rgb};
@@ -10,29 +9,46 @@ use super::Step;
 use super::state::{Paths, Vertices};
 use crate::scene::Scene;
 
-/// Adds the light that rays find, and what the BSDF's part in finding it is worth.
+/// Ends the paths whose rays hit nothing, and adds the environment's light to them.
+#[inline(always)]
+pub(super) fn leave<Q: Sequence>(
+    scene: &Scene,
+    step: &Step,
+    paths: &mut Paths<Q>,
+    at: &mut Vertices,
+    samples: &mut [PathSample; BATCH],
+) {
+    let sees_environment = step.sees_lights && scene.lights.has_environment();
+    for i in (0..paths.count.min(BATCH)).rev() {
+        if at.hits.t[i] < f32::INFINITY {
+            continue;
+        }
+        if sees_environment {
+            samples[paths.slot[i] as usize % BATCH].li += paths.beta.get(i) * environment(scene, paths, i);
+        }
+        paths.end(i);
+        at.hits.set(i, at.hits.get(paths.count % BATCH).as_ref());
+    }
+}
+
+/// Adds the light that surfaces emit, as far as the BSDF's part in finding it is worth.
 #[inline(always)]
 pub(super) fn gather_light<Q: Sequence>(
     scene: &Scene,
     step: &Step,
     paths: &Paths<Q>,
-    at: &mut Vertices,
+    at: &Vertices,
     samples: &mut [PathSample; BATCH],
 ) {
     if !step.sees_lights {
         return;
     }
-    let has_environment = scene.lights.has_environment();
     for i in 0..paths.count.min(BATCH) {
-        let le = match at.hits.get(i) {
-            None if has_environment => environment(scene, paths, i),
-            None => continue,
-            Some(hit) => match scene.light_of(hit.shape) {
-                Some(_) => emitted(scene, paths, at, i, &hit),
-                None => continue,
-            },
-        };
-        samples[paths.slot[i] as usize % BATCH].li += paths.beta.get(i) * le;
+        let hit = at.hits.at(i);
+        if scene.light_of(hit.shape).is_some() {
+            let le = emitted(scene, paths, at, i, &hit);
+            samples[paths.slot[i] as usize % BATCH].li += paths.beta.get(i) * le;
+        }
     }
 }
 
@@ -70,7 +86,7 @@ pub(super) fn find_models<Q: Sequence>(scene: &Scene, paths: &Paths<Q>, at: &mut
     let mut turn = [1.0; BATCH];
     at.others.clear();
     for i in 0..count {
-        let Some(hit) = at.hits.get(i) else { continue };
+        let hit = at.hits.at(i);
         let seen = scene.materials.get(scene.material_of(hit.shape)).lambert(facing[i] < 0.0);
         if let Some((reflectance, turned)) = seen {
             let albedo = match reflectance {
@@ -86,10 +102,6 @@ pub(super) fn find_models<Q: Sequence>(scene: &Scene, paths: &Paths<Q>, at: &mut
         at.others.push_if(seen.is_none(), i);
     }
     for i in 0..count {
-        let ns: Vec3 = at.surfaces.ns.get(i);
-        at.normal.set(i, ns * turn[i]);
-        // Paths that have left the scene end here.
-        let weight = if at.hits.t[i] < f32::INFINITY { at.albedo.get(i) } else { Rgb::ZERO };
-        at.albedo.set(i, weight);
+        at.normal.set(i, at.surfaces.ns.get(i) * turn[i]);
     }
 }

@@ -1,6 +1,6 @@
 //! Next-event estimation: light that sampled lights send to vertices.
 
-use glam::Vec2;
+use glam::{BVec3, Vec2, Vec3};
 use sr_geometry::{BATCH, Surfaces, Vec2s, Vec3s};
 use sr_sampling::{Sequence, power_weight};
 use sr_scene::Rgb;
@@ -43,10 +43,12 @@ pub(super) fn connect<Q: Sequence>(
     if scene.lights.has_extended() {
         for i in 0..count {
             let pdf = lights.pdf[i];
-            let share = if pdf > 0.0 { power_weight(pdf, to_light.pdf[i]) / pdf } else { 0.0 };
-            shadow.arriving.set(i, paths.beta.get(i) * to_light.f_cos.get(i) * share);
+            let share = power_weight(pdf, to_light.pdf[i]) / pdf;
+            let arriving = paths.beta.get(i) * to_light.f_cos.get(i) * share;
+            // Chosen, not multiplied by 0: without a sample the rest need not be a number.
+            shadow.arriving.set(i, Vec3::select(BVec3::splat(pdf > 0.0), arriving, Rgb::ZERO));
         }
-        shadow.keep_visible(scene, surfaces, (&lights.wi, &lights.target, &lights.t_end), count);
+        shadow.keep_visible(scene, surfaces, (&lights.wi, &lights.target, &lights.is_far), count);
         for i in shadow.list.iter() {
             let radiance = scene.lights.radiance(&lights.get(i), &scene.textures);
             samples[paths.slot[i] as usize % BATCH].li += shadow.arriving.get(i) * radiance;
@@ -56,7 +58,7 @@ pub(super) fn connect<Q: Sequence>(
         for i in 0..count {
             shadow.arriving.set(i, paths.beta.get(i) * to_delta.f_cos.get(i) * deltas.radiance.get(i));
         }
-        shadow.keep_visible(scene, surfaces, (&deltas.wi, &deltas.target, &deltas.t_end), count);
+        shadow.keep_visible(scene, surfaces, (&deltas.wi, &deltas.target, &deltas.is_far), count);
         for i in shadow.list.iter() {
             samples[paths.slot[i] as usize % BATCH].li += shadow.arriving.get(i);
         }
@@ -70,7 +72,7 @@ impl Shadow {
         &mut self,
         scene: &Scene,
         surfaces: &Surfaces,
-        (wi, target, t_end): (&Vec3s, &Vec3s, &[f32; BATCH]),
+        (wi, target, is_far): (&Vec3s, &Vec3s, &[u32; BATCH]),
         count: usize,
     ) {
         self.list.clear();
@@ -80,9 +82,9 @@ impl Shadow {
         for k in 0..self.list.len().min(BATCH) {
             let i = self.list.get(k);
             let surface = surfaces.get(i, Vec2::ZERO);
-            let ray = match t_end[i] {
-                f32::INFINITY => surface.spawn_ray(wi.get(i)),
-                _ => surface.spawn_ray_to(target.get(i)),
+            let ray = match is_far[i] {
+                0 => surface.spawn_ray_to(target.get(i)),
+                _ => surface.spawn_ray(wi.get(i)),
             };
             self.rays.set(k, &ray);
         }

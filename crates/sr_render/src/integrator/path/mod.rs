@@ -15,6 +15,8 @@ mod go_on;
 mod scatter;
 mod state;
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use sr_geometry::BATCH;
 use sr_sampling::Sequence;
 
@@ -69,7 +71,7 @@ impl PathTracer {
             first: depth == 0,
             last: depth + 1 >= self.limits.max_depth,
             dimension: FIRST_DIMENSION.wrapping_add(depth.wrapping_mul(DIMENSIONS_PER_VERTEX)),
-            roulette: depth + 1 >= self.limits.roulette_depth,
+            roulette: self.limits.plays_roulette(depth + 1),
             sees_lights: depth > 0 || !self.limits.hide_emitters,
         }
     }
@@ -89,14 +91,16 @@ impl Integrator for PathTracer {
         rays: &CameraRays<Q>,
         workspace: &mut Workspace<Q>,
         samples: &mut [PathSample; BATCH],
+        cancel: &AtomicBool,
     ) {
         samples[..rays.count].fill(PathSample::default());
         let Workspace { paths, at } = workspace;
         paths.start(rays);
         let mut depth = 0;
-        while paths.count > 0 {
+        while paths.count > 0 && !cancel.load(Ordering::Relaxed) {
             let step = self.step(depth);
             scene.geometry.intersect_batch(&paths.rays, paths.count, &mut at.hits);
+            arrive::leave(scene, &step, paths, at, samples);
             scene.geometry.surfaces(&paths.rays, &at.hits, paths.count, &mut at.surfaces);
             arrive::gather_light(scene, &step, paths, at, samples);
             if step.last && !step.first {
@@ -113,6 +117,68 @@ impl Integrator for PathTracer {
             direct::connect(scene, paths, at, samples);
             go_on::go_on(&step, paths, at, samples);
             depth += 1;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{Vec2, Vec3};
+    use sr_geometry::Vec3s;
+    use sr_sampling::Independent;
+    use sr_testing::known_scenes;
+
+    use super::*;
+    use crate::camera::Camera;
+    use crate::render::RenderSettings;
+
+    fn camera_rays(scene: &Scene, count: usize) -> CameraRays<Independent> {
+        let RenderSettings { width, height, .. } = RenderSettings::from_scene(scene);
+        let camera = Camera::new(scene.camera(), width, height);
+        let mut rays = CameraRays { count, ..CameraRays::none(Independent::new(1)) };
+        for i in 0..count {
+            rays.index[i] = i as u32;
+            rays.rays.set(i, &camera.ray(rays.cursor(i).next_2d(), Vec2::ZERO));
+        }
+        rays
+    }
+
+    /// What nobody may count on.
+    fn spoil(at: &mut Vertices) {
+        let nothing = Vec3s::splat(Vec3::NAN);
+        at.hits.shape.fill(u32::MAX);
+        at.hits.primitive.fill(u32::MAX);
+        for t in [&mut at.hits.b1, &mut at.hits.b2, &mut at.lights.pdf, &mut at.scattered.pdf] {
+            t.fill(f32::NAN);
+        }
+        for v in
+            [&mut at.surfaces.p, &mut at.surfaces.ng, &mut at.surfaces.ns, &mut at.normal, &mut at.albedo]
+        {
+            v.clone_from(&nothing);
+        }
+        for v in [&mut at.lights.wi, &mut at.deltas.wi, &mut at.scattered.wi, &mut at.shadow.arriving] {
+            v.clone_from(&nothing);
+        }
+    }
+
+    #[test]
+    fn leftovers_make_no_difference() {
+        let tracer =
+            PathTracer { limits: PathLimits { max_depth: 6, roulette_depth: 3, hide_emitters: false } };
+        let (unset, cancel) = (PathSample::default(), AtomicBool::new(false));
+        let mut used = tracer.workspace(Independent::new(1));
+        for known in known_scenes() {
+            let scene = Scene::compile(&known.desc).unwrap();
+            let rays = camera_rays(&scene, 100);
+            let (mut fresh, mut spoilt) = ([unset; BATCH], [unset; BATCH]);
+            tracer.trace(&scene, &rays, &mut tracer.workspace(Independent::new(1)), &mut fresh, &cancel);
+            spoil(&mut used.at);
+            tracer.trace(&scene, &rays, &mut used, &mut spoilt, &cancel);
+            assert_eq!(fresh, spoilt, "{}", known.name);
+            // and a batch of one gives what a batch of many gives
+            let alone = camera_rays(&scene, 1);
+            tracer.trace(&scene, &alone, &mut used, &mut spoilt, &cancel);
+            assert_eq!(fresh[0], spoilt[0], "{}", known.name);
         }
     }
 }

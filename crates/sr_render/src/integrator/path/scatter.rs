@@ -24,10 +24,8 @@ pub(super) fn scatter<Q: Sequence>(
     let count = paths.count.min(BATCH);
     if step.first {
         for i in 0..count {
-            if let Some(hit) = at.hits.get(i) {
-                let first = FirstHit { albedo: at.albedo.get(i), normal: at.normal.get(i), depth: hit.t };
-                samples[paths.slot[i] as usize % BATCH].first = Some(first);
-            }
+            let (albedo, normal, depth) = (at.albedo.get(i), at.normal.get(i), at.hits.t[i]);
+            samples[paths.slot[i] as usize % BATCH].first = Some(FirstHit { albedo, normal, depth });
         }
     }
     if !step.last {
@@ -46,7 +44,7 @@ pub(super) fn scatter<Q: Sequence>(
     }
     for k in 0..at.others.len() {
         let i = at.others.get(k);
-        let Some(hit) = at.hits.get(i) else { continue };
+        let hit = at.hits.at(i);
         let ray = paths.rays.get(i);
         let surface = at.surfaces.get(i, scene.geometry.uv(&ray, &hit));
         let (sight, side) = Sight::new(scene, &ray, &hit, &surface);
