@@ -40,12 +40,6 @@ impl Bounds3 {
         (self.max - self.min).max(Vec3::ZERO)
     }
 
-    /// Half the surface area: what the surface area heuristic compares.
-    pub(crate) fn half_area(&self) -> f32 {
-        let e = self.extent();
-        e.x * e.y + e.y * e.z + e.z * e.x
-    }
-
     /// Larger by a few units in the last place of its largest coordinates, to cover rounding in its making.
     pub(crate) fn padded(self) -> Self {
         let slack = 4.0 * f32::EPSILON * self.min.abs().max(self.max.abs());

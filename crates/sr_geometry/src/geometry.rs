@@ -142,7 +142,7 @@ impl Geometry {
         for (i, instance) in self.instances.iter().enumerate() {
             let bounds = instance.bounds(&self.groups[instance.group as usize]);
             if !bounds.is_empty() {
-                prims.push(PrimRef { bounds, shape: PrimRef::OTHER, primitive: self.others.len() as u32 });
+                prims.push(PrimRef::new(bounds, PrimRef::OTHER, self.others.len() as u32));
                 self.others.push(Other::Instance(i as u32));
             }
         }
@@ -180,7 +180,7 @@ impl Geometry {
                     prims.par_extend((0..mesh.triangles).into_par_iter().filter_map(|triangle| {
                         let vertices = self.triangle_vertices(shape, triangle);
                         let bounds = vertices.into_iter().fold(Bounds3::EMPTY, Bounds3::with);
-                        has_area(vertices).then_some(PrimRef { bounds, shape: shape.0, primitive: triangle })
+                        has_area(vertices).then_some(PrimRef::new(bounds, shape.0, triangle))
                     }));
                     continue;
                 }
@@ -191,7 +191,7 @@ impl Geometry {
                     (self.disks[index as usize].bounds(), Other::Disk { shape, index })
                 }
             };
-            prims.push(PrimRef { bounds, shape: PrimRef::OTHER, primitive: self.others.len() as u32 });
+            prims.push(PrimRef::new(bounds, PrimRef::OTHER, self.others.len() as u32));
             self.others.push(other);
         }
         prims

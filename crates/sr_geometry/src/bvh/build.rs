@@ -53,13 +53,14 @@ impl BuiltTree {
 struct Part {
     range: Range<usize>,
     extent: Extent,
+    half_area: f32,
     /// Is it better, or only possible, to leave it whole?
     done: bool,
 }
 
 impl Part {
-    fn new(prims: &[PrimRef], range: Range<usize>) -> Self {
-        Self { extent: Extent::of(&prims[range.clone()]), done: range.len() <= 1, range }
+    fn new(range: Range<usize>, extent: Extent) -> Self {
+        Self { half_area: extent.bounds.half_area(), extent, done: range.len() <= 1, range }
     }
 }
 
@@ -67,9 +68,10 @@ impl Part {
 /// Its root is a node.
 pub(super) fn build(prims: &mut [PrimRef]) -> BuiltTree {
     let mut tree = BuiltTree::new();
-    tree.root = build_subtree(prims, 0, 1, &mut tree);
+    let extent = Extent::of(prims);
+    tree.root = build_subtree(prims, extent, 0, 1, &mut tree);
     if !tree.root.is_node() {
-        tree.nodes.push(Node::new([(Extent::of(prims).bounds, tree.root)].into_iter()));
+        tree.nodes.push(Node::new([(extent.bounds.bounds(), tree.root)].into_iter()));
         tree.root = NodeRef::node(0);
     }
     tree
@@ -81,21 +83,27 @@ fn fits_leaf(prims: &[PrimRef]) -> bool {
 }
 
 /// Appends the tree over `prims`, the primitives from `first` on, to `tree`.
-fn build_subtree(prims: &mut [PrimRef], first: usize, depth: usize, tree: &mut BuiltTree) -> NodeRef {
+fn build_subtree(
+    prims: &mut [PrimRef],
+    extent: Extent,
+    first: usize,
+    depth: usize,
+    tree: &mut BuiltTree,
+) -> NodeRef {
     if fits_leaf(prims) {
         if !prims[0].is_triangle() {
-            return NodeRef::other(prims[0].primitive);
+            return NodeRef::other(prims[0].primitive());
         }
         tree.leaves.push(first..first + prims.len());
         tree.triangles += prims.len();
         // After the triangle that is in no leaf.
         return NodeRef::leaf(1 + tree.triangles - prims.len(), prims.len());
     }
-    let parts = cut(prims, depth);
+    let parts = cut(prims, extent, depth);
     let index = tree.nodes.len();
     tree.nodes.push(Node::EMPTY);
     let children = build_children(prims, &parts, first, depth, tree);
-    let bounds = parts.iter().map(|part| part.extent.bounds);
+    let bounds = parts.iter().map(|part| part.extent.bounds.bounds());
     tree.nodes[index] = Node::new(bounds.zip(children.iter().copied()));
     NodeRef::node(index)
 }
@@ -111,7 +119,7 @@ fn build_children(
         let build = |part: &Part| {
             let range = part.range.clone();
             let first = first + range.start;
-            build_subtree(&mut prims[range], first, depth + 1, tree)
+            build_subtree(&mut prims[range], part.extent, first, depth + 1, tree)
         };
         return parts.iter().map(build).collect();
     }
@@ -119,12 +127,12 @@ fn build_children(
     let mut rest = prims;
     for part in parts {
         let (slice, tail) = rest.split_at_mut(part.range.len());
-        slices.push((slice, first + part.range.start));
+        slices.push((slice, part.extent, first + part.range.start));
         rest = tail;
     }
-    let build = |(slice, first)| {
+    let build = |(slice, extent, first)| {
         let mut subtree = BuiltTree::new();
-        subtree.root = build_subtree(slice, first, depth + 1, &mut subtree);
+        subtree.root = build_subtree(slice, extent, first, depth + 1, &mut subtree);
         subtree
     };
     let subtrees: Vec<BuiltTree> = slices.into_par_iter().map(build).collect();
@@ -132,36 +140,30 @@ fn build_children(
 }
 
 /// Reorders `prims` and cuts them into at least two and at most eight parts, which follow one another.
-fn cut(prims: &mut [PrimRef], depth: usize) -> Vec<Part> {
+fn cut(prims: &mut [PrimRef], extent: Extent, depth: usize) -> Vec<Part> {
     let mut parts = Vec::with_capacity(WIDTH);
-    parts.push(Part::new(prims, 0..prims.len()));
+    parts.push(Part::new(0..prims.len(), extent));
     let balanced = depth + balanced_depth(prims.len()) >= MAX_DEPTH;
     while parts.len() < WIDTH {
         let open = parts.iter().enumerate().filter(|(_, part)| !part.done);
-        let size = |part: &Part| match balanced {
-            true => part.range.len() as f32,
-            false => part.extent.bounds.half_area(),
-        };
+        let size = |part: &Part| if balanced { part.range.len() as f32 } else { part.half_area };
         let Some((widest, _)) = open.max_by(|(_, a), (_, b)| size(a).total_cmp(&size(b))) else {
             break;
         };
         let part = &mut parts[widest];
-        let range = part.range.clone();
-        let (all, extent) = (&mut prims[range.clone()], part.extent);
-        let is_leaf = fits_leaf(all);
-        let middle = match split_sah(all, &extent).filter(|_| !balanced) {
-            Some((_, total)) if is_leaf && total > WORTH_CUTTING * extent.bounds.half_area() => None,
-            Some((middle, _)) => Some(middle),
-            None if is_leaf => None,
-            None => Some(split_middle(all, &extent)),
-        };
-        let Some(middle) = middle else {
+        let (range, extent) = (part.range.clone(), part.extent);
+        let prims = &mut prims[range.clone()];
+        let is_leaf = fits_leaf(prims);
+        let limit = if is_leaf { WORTH_CUTTING * part.half_area } else { f32::INFINITY };
+        let by_area = if balanced { None } else { split_sah(prims, &extent, limit) };
+        let Some(cut) = by_area.or_else(|| (!is_leaf).then(|| split_middle(prims, &extent))) else {
             part.done = true;
             continue;
         };
-        let middle = range.start + middle;
-        parts[widest] = Part::new(prims, range.start..middle);
-        parts.insert(widest + 1, Part::new(prims, middle..range.end));
+        let middle = range.start + cut.middle;
+        let [left, right] = cut.parts;
+        parts[widest] = Part::new(range.start..middle, left);
+        parts.insert(widest + 1, Part::new(middle..range.end, right));
     }
     parts
 }

@@ -121,8 +121,8 @@ fn write(
     to_ids: &mut [[u32; 2]],
 ) {
     for (lane, (prim, id)) in prims.iter().zip(to_ids).enumerate() {
-        *id = [prim.shape, prim.primitive];
-        let vertices = vertices_of(ShapeId(prim.shape), prim.primitive);
+        *id = [prim.shape(), prim.primitive()];
+        let vertices = vertices_of(ShapeId(prim.shape()), prim.primitive());
         for (row, coordinate) in vertices.iter().flat_map(Vec3::as_ref).enumerate() {
             to_vertices[row * prims.len() + lane] = *coordinate;
         }

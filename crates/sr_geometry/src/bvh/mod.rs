@@ -16,6 +16,7 @@ mod node;
 mod packet;
 mod pages;
 mod pieces;
+mod prim;
 mod scan;
 mod sheared;
 mod simd;
@@ -36,6 +37,8 @@ use leaves::Leaves;
 pub(crate) use node::MAX_INDEX;
 use node::{Node, NodeRef};
 use pieces::Pieces;
+use prim::Lanes;
+pub(crate) use prim::PrimRef;
 
 /// Children of a node, and the most triangles of a leaf.
 pub(crate) const WIDTH: usize = 8;
@@ -52,25 +55,6 @@ const FEW_ROUNDS: usize = 64;
 
 /// Bytes of nodes and leaves from which traversal prefetches: what a second-level cache surely does not hold.
 const PREFETCH_FROM: usize = 1 << 20;
-
-/// What the builder sees of a primitive.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct PrimRef {
-    pub bounds: Bounds3,
-    /// The triangle's shape, or [`PrimRef::OTHER`].
-    pub shape: u32,
-    /// The triangle within its mesh, or what an other leaf refers to.
-    pub primitive: u32,
-}
-
-impl PrimRef {
-    /// `shape` of everything that is not a triangle.
-    pub const OTHER: u32 = u32::MAX;
-
-    fn is_triangle(&self) -> bool {
-        self.shape != Self::OTHER
-    }
-}
 
 /// A primitive that is neither a triangle nor an instance.
 #[derive(Clone, Copy, Debug)]
@@ -93,14 +77,14 @@ impl<const N: usize> TriangleBlock<N> {
     fn new(prims: &[PrimRef], vertices_of: impl Fn(ShapeId, u32) -> [Vec3; 3]) -> Self {
         let mut block = Self { vertices: [[[f32::NAN; N]; 3]; 3], shape: [0; N], primitive: [0; N] };
         for (lane, prim) in prims.iter().enumerate() {
-            let vertices = vertices_of(ShapeId(prim.shape), prim.primitive);
+            let vertices = vertices_of(ShapeId(prim.shape()), prim.primitive());
             for (of_block, vertex) in block.vertices.iter_mut().zip(vertices) {
                 for axis in 0..3 {
                     of_block[axis][lane] = vertex[axis];
                 }
             }
-            block.shape[lane] = prim.shape;
-            block.primitive[lane] = prim.primitive;
+            block.shape[lane] = prim.shape();
+            block.primitive[lane] = prim.primitive();
         }
         block
     }
@@ -173,7 +157,7 @@ impl Bvh {
         prims: &mut [PrimRef],
         vertices_of: impl Fn(ShapeId, u32) -> [Vec3; 3] + Sync,
     ) -> Tree {
-        let bounds = prims.par_iter().map(|p| p.bounds).reduce(|| Bounds3::EMPTY, Bounds3::union);
+        let bounds = prims.par_iter().map(PrimRef::lanes).reduce(|| Lanes::EMPTY, Lanes::union).bounds();
         if prims.len() <= FEW && prims.iter().all(PrimRef::is_triangle) {
             let (first, count) = (self.few.len() as u32, prims.len() as u32);
             let form = Form::Few { first, count, extent: bounds.extent().max_element() };

@@ -98,17 +98,17 @@ impl Pieces {
     ) -> Option<Self> {
         let (triangles, others): (Vec<&PrimRef>, Vec<&PrimRef>) = prims.iter().partition(|p| p.is_triangle());
         let (mut disks, mut spheres) = (Vec::new(), Vec::new());
-        let mut flat = triangles.iter().fold(Bounds3::EMPTY, |bounds, p| bounds.union(p.bounds));
+        let mut flat = triangles.iter().fold(Bounds3::EMPTY, |bounds, p| bounds.union(p.bounds()));
         for other in others {
-            match round_of(other.primitive)? {
+            match round_of(other.primitive())? {
                 Round::Sphere(shape, sphere) => spheres.push((shape, sphere)),
                 Round::Disk(shape, disk) => {
                     disks.push((shape, disk));
-                    flat = flat.union(other.bounds);
+                    flat = flat.union(other.bounds());
                 }
             }
         }
-        let all = || prims.iter().fold(Bounds3::EMPTY, |bounds, p| bounds.union(p.bounds));
+        let all = || prims.iter().fold(Bounds3::EMPTY, |bounds, p| bounds.union(p.bounds()));
         let mut pieces = Self {
             kinds: [const { Vec::new() }; KINDS],
             balls: Vec::new(),
@@ -140,7 +140,7 @@ impl Pieces {
         prims: &[&PrimRef],
         vertices_of: impl Fn(ShapeId, u32) -> [Vec3; 3],
     ) -> Option<()> {
-        let vertices: Vec<_> = prims.iter().map(|p| vertices_of(ShapeId(p.shape), p.primitive)).collect();
+        let vertices: Vec<_> = prims.iter().map(|p| vertices_of(ShapeId(p.shape()), p.primitive())).collect();
         let half = |i: usize, order: [usize; 3]| Half { prim: prims[i], vertices: &vertices[i], order };
         let mut taken = vec![false; prims.len()];
         for i in 0..prims.len() {
@@ -247,7 +247,7 @@ impl Half<'_> {
             let [_, second, third] = self.order.map(|v| f32::from(u8::from(v == vertex)));
             (second + 2.0 * third).to_bits()
         };
-        [self.prim.shape, self.prim.primitive, weight(1), weight(2)]
+        [self.prim.shape(), self.prim.primitive(), weight(1), weight(2)]
     }
 }
 

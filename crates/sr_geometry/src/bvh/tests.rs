@@ -15,18 +15,16 @@ fn triangle(at: Vec3, size: f32, i: u32) -> [Vec3; 3] {
 }
 
 fn build(triangles: &[[Vec3; 3]], rounds: &[Round<'_>]) -> (Bvh, Tree) {
-    let prim = |(i, vertices): (usize, &[Vec3; 3])| PrimRef {
-        bounds: vertices.iter().fold(Bounds3::EMPTY, |bounds, &v| bounds.with(v)),
-        shape: 0,
-        primitive: i as u32,
+    let prim = |(i, vertices): (usize, &[Vec3; 3])| {
+        let bounds = vertices.iter().fold(Bounds3::EMPTY, |bounds, &v| bounds.with(v));
+        PrimRef::new(bounds, 0, i as u32)
     };
-    let other = |(i, round): (usize, &Round<'_>)| PrimRef {
-        bounds: match round {
+    let other = |(i, round): (usize, &Round<'_>)| {
+        let bounds = match round {
             Round::Sphere(_, sphere) => sphere.bounds(),
             Round::Disk(_, disk) => disk.bounds(),
-        },
-        shape: PrimRef::OTHER,
-        primitive: i as u32,
+        };
+        PrimRef::new(bounds, PrimRef::OTHER, i as u32)
     };
     let mut prims: Vec<PrimRef> = triangles.iter().enumerate().map(prim).collect();
     prims.extend(rounds.iter().enumerate().map(other));

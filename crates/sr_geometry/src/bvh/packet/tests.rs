@@ -52,7 +52,7 @@ struct Tally {
 /// Checks what is said of the piece that triangles make, which is of kind `KIND`.
 fn check<const KIND: Kind>(triangles: &[[Vec3; 3]], rays: &[Ray], tally: &mut Tally) {
     let bounds = |t: &[Vec3; 3]| t.iter().fold(Bounds3::EMPTY, |bounds, &v| bounds.with(v));
-    let prim = |(i, t)| PrimRef { bounds: bounds(t), shape: 0, primitive: i as u32 };
+    let prim = |(i, t)| PrimRef::new(bounds(t), 0, i as u32);
     let prims: Vec<_> = triangles.iter().enumerate().map(prim).collect();
     // Rounding may have left a line.
     let Some(pieces) = Pieces::new(&prims, |ShapeId(_), i| triangles[i as usize], |_| None) else { return };
@@ -132,7 +132,7 @@ fn what_is_sure_of_spheres_is_true() {
         let radius = 10f32.powi(i % 9 - 5);
         let center = radius * [0.0, 1.0, 30.0, 1000.0][(i / 9 % 4) as usize] * random.vector();
         let sphere = Sphere { center, radius, frame: Mat3::IDENTITY, flip_normals: false };
-        let prim = PrimRef { bounds: sphere.bounds(), shape: PrimRef::OTHER, primitive: 0 };
+        let prim = PrimRef::new(sphere.bounds(), PrimRef::OTHER, 0);
         let round_of = |_| Some(Round::Sphere(ShapeId(7), &sphere));
         let pieces = Pieces::new(&[prim], |_, _| [Vec3::ZERO; 3], round_of).expect("it fits");
         let mut batch = Rays::NONE;
@@ -198,7 +198,7 @@ fn a_disk_is_where_its_coordinates_are() {
             v_axis: size * 10f32.powi(-(i % 3)) * (turn * Vec3::new(5e-4 * random.number(), 1.0, 0.0)),
             flip_normals: false,
         };
-        let prim = PrimRef { bounds: disk.bounds(), shape: PrimRef::OTHER, primitive: 0 };
+        let prim = PrimRef::new(disk.bounds(), PrimRef::OTHER, 0);
         let round_of = |_| Some(Round::Disk(ShapeId(7), &disk));
         let pieces = Pieces::new(&[prim], |_, _| [Vec3::ZERO; 3], round_of).expect("it fits");
         let mut batch = Rays::NONE;
