@@ -15,8 +15,8 @@ import steradian as sr
 
 BATCHES = "mis(bsdf, light)"
 ONE_BY_ONE = "mis(light, bsdf)"
-# Two-sided, for 28 scenes of 3 channels at a family failure rate of 1 %: Šidák gives 1.2e-4 each. As replicates
-# are eight, errors are known to a quarter: the quantile of Student's t with 14 degrees of freedom is 5.26.
+# Two-sided, for 28 scenes of 3 channels at a family failure rate of 1 %: Šidák gives 1.2e-4 each. Of eight
+# replicates, errors are known to a quarter: this is the quantile of Student's t with 14 degrees of freedom.
 T_LIMIT = 5.27
 
 Part = dict[str, Any]

@@ -192,7 +192,7 @@ impl Pieces {
         let [e1, e2, off, normal] = [edges[0], edges[1], off, normal].map(|v| scale * v);
         let (extent, unit) = (f64::from(self.bounds.extent().max_element()), f64::from(ROUNDING));
         let edges = 24.0 * unit * (length_1(e1) + length_1(e2));
-        let slack = (edges + 24.0 * unit * length_1(normal) / extent + 4.0 * length_1(off)) as f32;
+        let slack = (edges + 24.0 * unit * length_1(normal) / extent + 8.0 * length_1(off)) as f32;
         let near = (8.0 * unit * length_1(normal) + 2.0 * normal.dot(off).abs() / extent) as f32;
         self.near = self.near.max(near);
         self.slack = self.slack.max(slack);

@@ -21,20 +21,22 @@
 //!
 //! - s: ε S. s × r: 2 ε S R from s, 2 ε S R in two products, 2 ε S R in their difference; its components are at most
 //!   2 S R.
-//! - U: with e2 rounded, 2 ε S R |e2|₁, products as much, two sums twice as much, and 6 ε S R |e2|₁ from the cross product:
-//!   14 ε S R |e2|₁. V likewise with e1.
+//! - U: with e2 rounded, 2 ε S R |e2|₁, products as much, two sums twice as much, and 6 ε S R |e2|₁ from the cross
+//!   product: 14 ε S R |e2|₁. V likewise with e1.
 //! - D: 4 ε |n|₁ R: n is rounded, products are, and two sums. So is t's numerator, with S, and another ε for s: 5 ε |n|₁ S.
 //! - least: D − U − V adds up to 18 ε S R (|e1|₁ + |e2|₁) + 5 ε |n|₁ R; D − U and D − V are better. Where the sign of D is
 //!   wrong, a hit has U, V and the rest within the error of D, another 4 ε |n|₁ R.
 //! - A disk's least: the errors of U, V and D as above, and 3 ε |n|₁ R from squares, sum and root near the rim.
 //! - The parallelogram's fourth corner is off by δ: its edges are turned by 2 |δ|₁ S R at most, U and V at the corner by
-//!   2 |e|∞ |δ|₁ R ≤ 4 |δ|₁ S R.
+//!   2 |e|∞ |δ|₁ R ≤ 4 |δ|₁ S R; the second half's normal by δ × (e2 − e1), hence its D by 4 |δ|₁ S R.
 //!
-//! R ≤ 2 S R / `extent` turns all into `slack` S R, with `slack` = 24 ε (|e1|₁ + |e2|₁) + 24 ε |n|₁ / `extent` + 4 |δ|₁. Where
-//! least is larger, the ray surely meets the piece, which of its halves does not matter; where it is less than minus
+//! R ≤ 2 S R / `extent` turns all into `slack` S R, with `slack` = 24 ε (|e1|₁ + |e2|₁) + 24 ε |n|₁ / `extent` + 8 |δ|₁.
+//! Where least is larger, the ray surely meets the piece, which of its halves does not matter; where it is less than minus
 //! that, it surely does not. A piece is surely ahead where the numerator of t is larger than `near` S, with `near` =
-//! 8 ε |n|₁ + 2 |n·δ| / `extent`. Where it is not positive, the piece is taken to be behind: a hit that is ahead by less
-//! than rounding errors may be lost, here as in [`super::sheared`].
+//! 8 ε |n|₁ + 2 |n·δ| / `extent`: a ray that is sure to meet the piece meets either half, if crooked, within the half's
+//! own outline, where heights over the two planes differ by no more than n·δ. Where the numerator is not positive, the
+//! piece is taken to be behind: a hit that is ahead by less than rounding errors may be lost, here as in
+//! [`super::sheared`].
 
 mod any;
 mod ball;
