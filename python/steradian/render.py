@@ -64,7 +64,8 @@ def render(
         sampler: ``"sobol"`` (Owen-scrambled) or ``"independent"``.
         max_depth: longest path in edges: 1 emitters only, 2 direct light, -1 unbounded; the scene's
             unless given.
-        roulette_depth: edges before Russian roulette may end a path, -1 never; the scene's unless given.
+        roulette_depth: edges before Russian roulette may end a path; at most 1024, which -1 stands for; the
+            scene's unless given.
         hide_emitters: do emitters seen directly stay black? The scene's unless given.
         size: (width, height) in pixels; the scene's unless given.
         seed: 0 to 2^64 - 1.

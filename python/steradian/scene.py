@@ -25,7 +25,7 @@ class SceneSettings:
     max_depth: int
     """Longest path in edges: 1 emitters only, 2 direct light, -1 unbounded."""
     roulette_depth: int
-    """Edges before Russian roulette may end a path; -1 never."""
+    """Edges before Russian roulette may end a path; -1: not before the 1024th."""
     hide_emitters: bool
     """Do emitters that the camera sees directly stay black?"""
 

@@ -36,7 +36,7 @@ pub struct Request {
     seed: u64,
     /// -1 is unbounded.
     max_depth: i64,
-    /// -1 is never.
+    /// -1 is as late as may be.
     roulette_depth: i64,
     hide_emitters: bool,
     first_sample: u32,

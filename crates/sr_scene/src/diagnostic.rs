@@ -67,7 +67,8 @@ impl Diagnostic {
 
     /// Adds the name among `candidates` that `name` was probably meant to be, if one is close.
     pub fn guess<'a>(mut self, name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Self {
-        if let Some(best) = nearest_name(name, candidates) {
+        // The very name is known, but not as what it is used for: no slip of the keyboard.
+        if let Some(best) = nearest_name(name, candidates).filter(|&best| best != name) {
             self.hint = Some(format!("did you mean \"{best}\"?"));
         }
         self
@@ -167,5 +168,21 @@ impl fmt::Display for Severity {
             Severity::Warning => "warning",
             Severity::Error => "error",
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn guesses_are_names_that_were_not_given() {
+        let hint = |name: &str| {
+            Diagnostic::warning("test", &Span::default(), "?").guess(name, ["bitmap", "filename"]).hint
+        };
+        assert_eq!(hint("bitmpa").as_deref(), Some("did you mean \"bitmap\"?"));
+        assert_eq!(hint("filenam").as_deref(), Some("did you mean \"filename\"?"));
+        assert_eq!(hint("bitmap"), None);
+        assert_eq!(hint("roughness"), None);
     }
 }
