@@ -99,7 +99,12 @@ impl<F: Fn(u32, &Ray) -> Option<Hit>> Batch<'_, F> {
                 let root = (root, &tree.bounds);
                 walk_many::<_, ANY>(eight, bvh, root, (rays, count), meet_other, answer);
             }
-            _ => (0..count).for_each(|i| self.meet_one::<_, _, ANY>(eight, few, i, &mut answer)),
+            // No closure: it might be compiled without the instruction set.
+            _ => {
+                for i in 0..count {
+                    self.meet_one::<_, _, ANY>(eight, few, i, &mut answer);
+                }
+            }
         }
     }
 
