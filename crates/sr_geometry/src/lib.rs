@@ -3,7 +3,8 @@
 //! In: [`GeometryInput`], borrowed triangle meshes, spheres and disks in world space and in groups that
 //! [`Instance`]s place. Out: [`Geometry`], flat arrays behind one 8-wide bounding volume hierarchy, which answers
 //! [`Geometry::intersect`] (closest [`Hit`]), [`Geometry::occluded`] (any hit) and [`Geometry::surface`]
-//! (position with its error bound, normals, texture coordinates). No material and no light is known here.
+//! (position with its error bound, normals, texture coordinates), for one ray or for a batch of [`Rays`]. No material
+//! and no light is known here.
 //!
 //! Invariants:
 //! - Triangles are watertight: a ray through a shared edge or vertex hits at least one of its triangles.
@@ -12,7 +13,7 @@
 //!
 //! Coordinates are `f32`. Sizes and distances between 1e-12 and 1e12 are in the range where nothing overflows.
 //!
-//! Reading order: `ray`, `shape`, `geometry`, `surface`, then `bvh`.
+//! Reading order: `ray`, `shape`, `geometry`, `surface`, `batch`, then `bvh`.
 
 mod batch;
 mod bounds;

@@ -3,7 +3,7 @@
 //! In: a [`sr_scene::SceneDesc`]. Out: a [`RenderedImage`] with a standard error per pixel. Files are
 //! written by [`output`]; nothing here reads one.
 //!
-//! Reading order: [`render()`], [`film`], [`integrator`] (`path.rs`, then `strategies.rs`), [`light`].
+//! Reading order: [`render()`], `pass`, [`film`], [`integrator`] (`strategies.rs`, then `path/mod.rs`), [`light`].
 
 pub mod camera;
 pub mod film;

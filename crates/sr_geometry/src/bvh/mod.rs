@@ -63,19 +63,19 @@ pub(crate) enum Round<'a> {
     Disk(ShapeId, &'a Disk),
 }
 
-/// Up to `N` triangles, transposed. Missing ones have NaN vertices, which no ray hits.
+/// Up to [`WIDE`] triangles, transposed. Missing ones have NaN vertices, which no ray hits.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
-pub(crate) struct TriangleBlock<const N: usize> {
+pub(crate) struct TriangleBlock {
     /// By vertex, then axis.
-    vertices: [[[f32; N]; 3]; 3],
-    shape: [u32; N],
-    primitive: [u32; N],
+    vertices: [[[f32; WIDE]; 3]; 3],
+    shape: [u32; WIDE],
+    primitive: [u32; WIDE],
 }
 
-impl<const N: usize> TriangleBlock<N> {
+impl TriangleBlock {
     fn new(prims: &[PrimRef], vertices_of: impl Fn(ShapeId, u32) -> [Vec3; 3]) -> Self {
-        let mut block = Self { vertices: [[[f32::NAN; N]; 3]; 3], shape: [0; N], primitive: [0; N] };
+        let mut block = Self { vertices: [[[f32::NAN; WIDE]; 3]; 3], shape: [0; WIDE], primitive: [0; WIDE] };
         for (lane, prim) in prims.iter().enumerate() {
             let vertices = vertices_of(ShapeId(prim.shape()), prim.primitive());
             for (of_block, vertex) in block.vertices.iter_mut().zip(vertices) {
@@ -91,13 +91,13 @@ impl<const N: usize> TriangleBlock<N> {
 
     /// The vertices of one of the triangles.
     fn triangle(&self, lane: usize) -> [Vec3; 3] {
-        self.vertices.map(|vertex| Vec3::from_array(vertex.map(|axis| axis[lane % N])))
+        self.vertices.map(|vertex| Vec3::from_array(vertex.map(|axis| axis[lane % WIDE])))
     }
 
     /// The hit of one of the triangles.
     #[inline(always)]
     fn hit(&self, lane: usize, t: f32, [b1, b2]: [f32; 2]) -> Hit {
-        let (shape, primitive) = (ShapeId(self.shape[lane % N]), self.primitive[lane % N]);
+        let (shape, primitive) = (ShapeId(self.shape[lane % WIDE]), self.primitive[lane % WIDE]);
         Hit { t, b1, b2, shape, primitive, instance: NO_INSTANCE }
     }
 }
@@ -131,7 +131,7 @@ impl Tree {
 pub(crate) struct Bvh {
     nodes: Vec<Node>,
     leaves: Leaves,
-    few: Vec<TriangleBlock<WIDE>>,
+    few: Vec<TriangleBlock>,
     pieces: Vec<Pieces>,
     kernel: Kernel,
     /// Is the tree so large that memory is worth asking for ahead of need?

@@ -12,7 +12,7 @@ use crate::{Hit, Ray};
 
 /// As many of a block's triangles as there are lanes.
 struct Part<'a> {
-    block: &'a TriangleBlock<WIDE>,
+    block: &'a TriangleBlock,
     part: usize,
 }
 
@@ -33,7 +33,7 @@ impl<L: Lanes> Triangles<L> for Part<'_> {
 #[inline(always)]
 pub(super) fn scan<L: Lanes, const ANY: bool>(
     lanes: L,
-    (blocks, count, extent): (&[TriangleBlock<WIDE>], usize, f32),
+    (blocks, count, extent): (&[TriangleBlock], usize, f32),
     ray: &Ray,
     closest: &mut Hit,
 ) -> bool {
@@ -50,7 +50,7 @@ pub(super) fn scan<L: Lanes, const ANY: bool>(
 #[cold]
 #[inline(never)]
 fn scan_exactly<const ANY: bool>(
-    (blocks, count): (&[TriangleBlock<WIDE>], usize),
+    (blocks, count): (&[TriangleBlock], usize),
     ray: &Ray,
     closest: &mut Hit,
 ) -> bool {
@@ -72,7 +72,7 @@ struct Found<L: Lanes> {
 #[inline(always)]
 fn meet_all<L: Lanes, const ANY: bool, const EXACT: bool>(
     lanes: L,
-    (blocks, count): (&[TriangleBlock<WIDE>], usize),
+    (blocks, count): (&[TriangleBlock], usize),
     (ray, sheared): (&Ray, &Sheared<L>),
 ) -> Found<L> {
     let (zero, t) = (lanes.splat(0.0), lanes.splat(ray.t_max));
@@ -106,7 +106,7 @@ fn meet_all<L: Lanes, const ANY: bool, const EXACT: bool>(
 #[inline(always)]
 fn conclude<L: Lanes, const ANY: bool>(
     lanes: L,
-    blocks: &[TriangleBlock<WIDE>],
+    blocks: &[TriangleBlock],
     (ray, found): (&Ray, &Found<L>),
     closest: &mut Hit,
 ) -> bool {

@@ -1,7 +1,9 @@
-//! Integrators: from a camera ray to an estimate of the radiance along it.
+//! Integrators: from camera rays to estimates of the radiance along them.
 //!
-//! - [`PathTracer`]: `mis(bsdf, light)`, the default and the fast one.
-//! - [`StrategyTracer`]: any [`crate::Strategy`], written for clarity; tests hold the two against each other.
+//! In: a batch of [`CameraRays`]. Out: a [`PathSample`] for each.
+//!
+//! - [`PathTracer`]: `mis(bsdf, light)`, the default and the fast one: many paths at a time.
+//! - [`StrategyTracer`]: any [`crate::Strategy`], written for clarity: one path at a time. Tests hold the two against each other.
 //!
 //! Invariant: every integrator's expectation is the same image. What only one technique can find is found
 //! by that technique: delta lights by light sampling, delta lobes by the BSDF.
