@@ -6,6 +6,8 @@
     python3 dev.py build                             build only
     python3 dev.py test                              formatting, lints, types, documentation, all tests
     python3 dev.py test -k merge                     only Python's tests, with these arguments for pytest
+    python3 dev.py instructions                      count instructions, compare them with the stored counts
+    python3 dev.py bench --quick                     measure beside other renderers, see benches/README.md
 
 Needs Rust (rustup.rs) and Python 3.11 or newer with pip; nothing else.
 """
@@ -41,6 +43,8 @@ SOURCES = (
     "rust-toolchain.toml",
     "README.md",
 )
+# Commands that are scripts of their own.
+SCRIPTS = {"instructions": "benches/instructions.py", "bench": "benches/run.py"}
 OLDEST_PYTHON = (3, 11)
 # The last line of a test runner, such as "test result: ok. 12 passed" or "31 passed in 4.20s".
 CLOSING_LINE = re.compile(
@@ -56,6 +60,8 @@ def main(arguments):
     check_tools()
     if arguments[0] == "test":
         return test(arguments[1:])
+    if arguments[0] in SCRIPTS:
+        return run_ignoring_interrupts([sys.executable, str(ROOT / SCRIPTS[arguments[0]]), *arguments[1:]])
     for name in arguments[1:]:
         if name.endswith(".xml") and not Path(name).exists():
             # Said at once, and not after a build of some minutes.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 import math
 import stat
 import sys
@@ -15,6 +16,8 @@ import steradian as sr
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "benches"))
+
+import instructions  # noqa: E402
 
 from beside import arguments, llvm, meshes, plain, report, table  # noqa: E402
 from beside.paired import Bar, geometric_mean, ratio, slope  # noqa: E402
@@ -208,3 +211,45 @@ def test_every_study_has_what_a_report_needs() -> None:
     for name in NAMES:
         one = study(name)
         assert one.TITLE and callable(one.measure) and callable(one.tables) and callable(one.bars)
+
+
+CALLGRIND = """\
+version: 1
+events: Ir
+summary: 120
+
+fn=(1) counted
+12 120
+
+totals: 120
+"""
+
+
+def test_counts_are_read_from_callgrind() -> None:
+    assert instructions.total(CALLGRIND) == 120
+    for nothing in ("", "totals: 0\n"):
+        with pytest.raises(SystemExit):
+            instructions.total(nothing)
+
+
+@pytest.mark.parametrize(
+    ("count", "stored", "verdict", "regressed"),
+    [
+        (103, 100, "MORE", True),
+        (1019, 1000, "same", False),
+        (981, 1000, "same", False),
+        (90, 100, "less", False),
+        (100, None, "new", False),
+    ],
+)
+def test_counts_are_compared(count: int, stored: int | None, verdict: str, regressed: bool) -> None:
+    row = instructions.Row("work", count, stored)
+    assert row.verdict(0.02).startswith(verdict)
+    assert bool(instructions.regressions([row], 0.02)) is regressed
+    assert verdict in instructions.line(row, 0.02)
+
+
+def test_every_stored_count_is_of_a_work() -> None:
+    program = (ROOT / "benches" / "instructions" / "src" / "main.rs").read_text()
+    stored = json.loads(instructions.STORED.read_text())
+    assert stored and all(f'("{work}", ' in program for work in stored)

@@ -22,8 +22,7 @@ from beside.table import number, paragraph, table
 
 TITLE = "Paths per second"
 DEPTH = 8
-PIXELS = 1 << 18
-SPP = 16
+PIXELS = 1 << 17
 SLOW = ("mitsuba-scalar", "luxcore", "cycles", "pbrt")
 """These get a quarter of the samples; rates are per path."""
 FOREIGN = ("veach-mis", "veach-ajar", "living-room", "staircase")
@@ -39,21 +38,25 @@ class Case:
     name: str
     scene: Path
     roulette: int | None
+    spp: int
     plain: bool
 
 
 def cases(options: Options) -> tuple[list[Case], list[str]]:
     """The scenes that are there, and the names of those that are not."""
     million = generated.scene(10_000 if options.quick else 1_000_000)
-    out = [Case("cornell-box", CORNELL_BOX, None, True), Case("million-triangles", million, None, True)]
+    out = [
+        Case("cornell-box", CORNELL_BOX, None, 32, True),
+        Case("million-triangles", million, None, 8, True),
+    ]
     missing = []
     for name in FOREIGN:
         path = options.scenes / name / "scene.xml"
         if path.exists():
-            out.append(Case(name, path, 5, False))
+            out.append(Case(name, path, 5, 8, False))
         else:
             missing.append(name)
-    out += [Case(_title(path), path, 5, False) for path in options.also]
+    out += [Case(_title(path), path, 5, 8, False) for path in options.also]
     return out, missing
 
 
@@ -74,7 +77,9 @@ def measure(options: Options) -> dict[str, Any]:
 
 def _measure_scene(case: Case, names: list[str], options: Options) -> dict[str, Any]:
     width, height = (64, 64) if options.quick else _size(case, options)
-    job = Job(case.scene, width, height, 4 if options.quick else SPP, DEPTH, case.roulette, options.threads)
+    job = Job(
+        case.scene, width, height, 4 if options.quick else case.spp, DEPTH, case.roulette, options.threads
+    )
     before = machine.load()
     workers, failed = [], {}
     try:
@@ -106,6 +111,7 @@ def _measure_scene(case: Case, names: list[str], options: Options) -> dict[str, 
     return {
         "scene": case.name,
         "size": [width, height],
+        "spp": job.spp,
         "roulette": case.roulette,
         "load": [before, machine.load()],
         "failed": failed,
@@ -150,9 +156,10 @@ def tables(found: dict[str, Any]) -> list[str]:
         width, height = scene["size"]
         roulette = "none" if scene["roulette"] is None else f"from edge {scene['roulette']}"
         lines += [
-            f"**{scene['scene']}**, {width} × {height}, Russian roulette: {roulette}; load of the machine "
-            f"{_load(scene['load'])}",
-            "",
+            *paragraph(
+                f"**{scene['scene']}**, {width} × {height}, {scene['spp']} samples per pixel, Russian roulette: "
+                f"{roulette}; load of the machine {_load(scene['load'])}"
+            ),
             *table(
                 ["renderer", "Mpaths/s", "ratio", "CPU ratio", "mean", "load, s", "peak MiB"],
                 [_cells(name, row) for name, row in scene["renderers"].items()],
