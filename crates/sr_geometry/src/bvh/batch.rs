@@ -4,11 +4,12 @@
 //! large, by several rays in turn.
 
 use super::dispatch::meet;
-use super::interleave::walk_many;
+
 use super::packet;
 #[cfg(target_arch = "x86_64")]
 use super::simd::{Avx2, Avx512};
-use super::simd::{Kernel, Lanes, Simd};
+use super::simd::{Kernel, Walk};
+use super::stream::walk_many;
 use super::{Bvh, Form, Pieces, Tree};
 use crate::{BATCH, Hit, Hits, Ray, Rays};
 
@@ -38,8 +39,8 @@ impl Bvh {
 
 /// What is done with an instruction set.
 trait Work {
-    /// `few` meets few triangles, `eight` walks trees. Always to be inlined.
-    fn run<S: Simd, L: Lanes>(self, eight: S, few: L);
+    /// Always to be inlined.
+    fn run<S: Walk>(self, simd: S);
 }
 
 impl Kernel {
@@ -52,21 +53,21 @@ impl Kernel {
             // SAFETY: as above.
             #[cfg(target_arch = "x86_64")]
             Kernel::Avx2(avx2) => unsafe { run_avx2(avx2, work) },
-            Kernel::Portable(portable) => work.run(portable, portable),
+            Kernel::Portable(portable) => work.run(portable),
         }
     }
 }
 
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,bmi1,bmi2,lzcnt")]
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,bmi1,bmi2,lzcnt,popcnt")]
 fn run_avx512(avx512: Avx512, work: impl Work) {
-    work.run(avx512.eight(), avx512);
+    work.run(avx512);
 }
 
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,bmi1,bmi2,lzcnt")]
+#[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
 fn run_avx2(avx2: Avx2, work: impl Work) {
-    work.run(avx2, avx2);
+    work.run(avx2);
 }
 
 /// Rays and the tree that they meet.
@@ -87,22 +88,17 @@ impl<F: Fn(u32, &Ray) -> Option<Hit>> Batch<'_, F> {
 
     /// Meets the tree ray by ray, or in a large tree with several rays in turn; `answer(i, hit)` gets what ray i hits.
     #[inline(always)]
-    fn meet<S: Simd, L: Lanes, const ANY: bool>(
-        &self,
-        eight: S,
-        few: L,
-        mut answer: impl FnMut(usize, Option<&Hit>),
-    ) {
+    fn meet<S: Walk, const ANY: bool>(&self, simd: S, mut answer: impl FnMut(usize, Option<&Hit>)) {
         let Self { bvh, tree, rays, count, ref meet_other } = *self;
         match tree.form {
-            Form::Nodes(root) if bvh.prefetches => {
+            Form::Nodes(root) => {
                 let root = (root, &tree.bounds);
-                walk_many::<_, ANY>(eight, bvh, root, (rays, count), meet_other, answer);
+                walk_many::<_, ANY>(simd, bvh, root, (rays, count), meet_other, answer);
             }
             // No closure: it might be compiled without the instruction set.
             _ => {
                 for i in 0..count {
-                    self.meet_one::<_, _, ANY>(eight, few, i, &mut answer);
+                    self.meet_one::<_, ANY>(simd, i, &mut answer);
                 }
             }
         }
@@ -110,17 +106,16 @@ impl<F: Fn(u32, &Ray) -> Option<Hit>> Batch<'_, F> {
 
     /// As `meet`, with one ray.
     #[inline(always)]
-    fn meet_one<S: Simd, L: Lanes, const ANY: bool>(
+    fn meet_one<S: Walk, const ANY: bool>(
         &self,
-        eight: S,
-        few: L,
+        simd: S,
         i: usize,
         mut answer: impl FnMut(usize, Option<&Hit>),
     ) {
         let Self { bvh, tree, rays, ref meet_other, .. } = *self;
         let ray = rays.get(i);
         let mut hit = Hit::none_before(ray.t_max);
-        let any = meet::<_, _, ANY>(eight, few, (bvh, tree), &ray, meet_other, &mut hit);
+        let any = meet::<_, ANY>(simd, (bvh, tree), &ray, meet_other, &mut hit);
         answer(i, any.then_some(&hit));
     }
 }
@@ -141,15 +136,15 @@ struct Closest<'a, F> {
 
 impl<F: Fn(u32, &Ray) -> Option<Hit>> Work for Closest<'_, F> {
     #[inline(always)]
-    fn run<S: Simd, L: Lanes>(self, eight: S, lanes: L) {
+    fn run<S: Walk>(self, simd: S) {
         let Self { batch, hits } = self;
         let Some(pieces) = batch.pieces() else {
-            return batch.meet::<_, _, false>(eight, lanes, |i, hit| hits.set(i, hit));
+            return batch.meet::<_, false>(simd, |i, hit| hits.set(i, hit));
         };
-        for first in (0..batch.count).step_by(L::COUNT) {
-            let mut doubtful = packet::closest(lanes, pieces, batch.rays, (first, batch.count), hits);
+        for first in (0..batch.count).step_by(S::COUNT) {
+            let mut doubtful = packet::closest(simd, pieces, batch.rays, (first, batch.count), hits);
             while let Some(lane) = take_lowest(&mut doubtful) {
-                batch.meet_one::<_, _, false>(eight, lanes, first + lane, |i, hit| hits.set(i, hit));
+                batch.meet_one::<_, false>(simd, first + lane, |i, hit| hits.set(i, hit));
             }
         }
     }
@@ -162,19 +157,19 @@ struct Any<'a, F> {
 
 impl<F: Fn(u32, &Ray) -> Option<Hit>> Work for Any<'_, F> {
     #[inline(always)]
-    fn run<S: Simd, L: Lanes>(self, eight: S, lanes: L) {
+    fn run<S: Walk>(self, simd: S) {
         let Self { batch, occluded } = self;
         let Some(pieces) = batch.pieces() else {
-            return batch.meet::<_, _, true>(eight, lanes, |i, hit| occluded[i] = hit.is_some());
+            return batch.meet::<_, true>(simd, |i, hit| occluded[i] = hit.is_some());
         };
-        for first in (0..batch.count).step_by(L::COUNT) {
-            let (hit, mut doubtful) = packet::any(lanes, pieces, batch.rays, (first, batch.count));
-            for (lane, occluded) in occluded[first..][..L::COUNT].iter_mut().enumerate() {
+        for first in (0..batch.count).step_by(S::COUNT) {
+            let (hit, mut doubtful) = packet::any(simd, pieces, batch.rays, (first, batch.count));
+            for (lane, occluded) in occluded[first..][..S::COUNT].iter_mut().enumerate() {
                 *occluded = hit >> lane & 1 != 0;
             }
             while let Some(lane) = take_lowest(&mut doubtful) {
                 let answer = |i: usize, hit: Option<&Hit>| occluded[i] = hit.is_some();
-                batch.meet_one::<_, _, true>(eight, lanes, first + lane, answer);
+                batch.meet_one::<_, true>(simd, first + lane, answer);
             }
         }
     }

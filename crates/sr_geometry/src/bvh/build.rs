@@ -8,7 +8,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::split::{Extent, split_middle, split_sah};
-use super::{Node, NodeRef, PrimRef, WIDTH};
+use super::{LEAF, Node, NodeRef, PrimRef, WIDTH};
 
 /// The largest number of nodes on a path from the root to a leaf.
 pub(super) const MAX_DEPTH: usize = 36;
@@ -71,7 +71,7 @@ pub(super) fn build(prims: &mut [PrimRef]) -> BuiltTree {
     let extent = Extent::of(prims);
     tree.root = build_subtree(prims, extent, 0, 1, &mut tree);
     if !tree.root.is_node() {
-        tree.nodes.push(Node::new([(extent.bounds.bounds(), tree.root)].into_iter()));
+        tree.nodes.push(Node::new(&[(extent.bounds.bounds(), tree.root)]));
         tree.root = NodeRef::node(0);
     }
     tree
@@ -79,7 +79,7 @@ pub(super) fn build(prims: &mut [PrimRef]) -> BuiltTree {
 
 /// Can these primitives be one leaf?
 fn fits_leaf(prims: &[PrimRef]) -> bool {
-    prims.len() == 1 || (prims.len() <= WIDTH && prims.iter().all(PrimRef::is_triangle))
+    prims.len() == 1 || (prims.len() <= LEAF && prims.iter().all(PrimRef::is_triangle))
 }
 
 /// Appends the tree over `prims`, the primitives from `first` on, to `tree`.
@@ -104,7 +104,7 @@ fn build_subtree(
     tree.nodes.push(Node::EMPTY);
     let children = build_children(prims, &parts, first, depth, tree);
     let bounds = parts.iter().map(|part| part.extent.bounds.bounds());
-    tree.nodes[index] = Node::new(bounds.zip(children.iter().copied()));
+    tree.nodes[index] = Node::new(&bounds.zip(children).collect::<Vec<_>>());
     NodeRef::node(index)
 }
 

@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::scan::scan;
 #[cfg(target_arch = "x86_64")]
 use super::simd::{Avx2, Avx512};
-use super::simd::{Kernel, Lanes, Simd};
+use super::simd::{Kernel, Walk};
 use super::traverse::walk;
 use super::{Bvh, Form, Tree, WIDE};
 use crate::{Hit, Ray};
@@ -51,26 +51,25 @@ impl Bvh {
             Kernel::Avx2(avx2) => unsafe {
                 meet_avx2::<ANY>(avx2, &at, x, y, z, u, v, w, ray.t_max, meet_other, closest)
             },
-            Kernel::Portable(portable) => meet::<_, _, ANY>(portable, portable, at, ray, meet_other, closest),
+            Kernel::Portable(portable) => meet::<_, ANY>(portable, at, ray, meet_other, closest),
         }
     }
 }
 
-/// Was anything hit? `few` meets few triangles, `eight` walks trees.
+/// Was anything hit?
 #[inline(always)]
-pub(super) fn meet<S: Simd, L: Lanes, const ANY: bool>(
-    eight: S,
-    few: L,
+pub(super) fn meet<S: Walk, const ANY: bool>(
+    simd: S,
     (bvh, tree): (&Bvh, &Tree),
     ray: &Ray,
     meet_other: impl Fn(u32, &Ray) -> Option<Hit>,
     closest: &mut Hit,
 ) -> bool {
     match tree.form {
-        Form::Nodes(root) => walk::<_, ANY>(eight, bvh, (root, &tree.bounds), ray, meet_other, closest),
+        Form::Nodes(root) => walk::<_, ANY>(simd, bvh, (root, &tree.bounds), ray, meet_other, closest),
         Form::Few { first, count, extent, .. } => {
             let blocks = &bvh.few[first as usize..][..(count as usize).div_ceil(WIDE)];
-            scan::<_, ANY>(few, (blocks, count as usize, extent), ray, closest)
+            scan::<_, ANY>(simd, (blocks, count as usize, extent), ray, closest)
         }
     }
 }
@@ -79,7 +78,7 @@ pub(super) fn meet<S: Simd, L: Lanes, const ANY: bool>(
 // for which a processor waits as long as for a block of triangles.
 
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,bmi1,bmi2,lzcnt")]
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,bmi1,bmi2,lzcnt,popcnt")]
 #[allow(clippy::too_many_arguments)]
 fn meet_avx512<const ANY: bool>(
     avx512: Avx512,
@@ -95,11 +94,11 @@ fn meet_avx512<const ANY: bool>(
     closest: &mut Hit,
 ) -> bool {
     let ray = Ray { origin: Vec3::new(x, y, z), direction: Vec3::new(u, v, w), t_max };
-    meet::<_, _, ANY>(avx512.eight(), avx512, *at, &ray, meet_other, closest)
+    meet::<_, ANY>(avx512, *at, &ray, meet_other, closest)
 }
 
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,bmi1,bmi2,lzcnt")]
+#[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
 #[allow(clippy::too_many_arguments)]
 fn meet_avx2<const ANY: bool>(
     avx2: Avx2,
@@ -115,5 +114,5 @@ fn meet_avx2<const ANY: bool>(
     closest: &mut Hit,
 ) -> bool {
     let ray = Ray { origin: Vec3::new(x, y, z), direction: Vec3::new(u, v, w), t_max };
-    meet::<_, _, ANY>(avx2, avx2, *at, &ray, meet_other, closest)
+    meet::<_, ANY>(avx2, *at, &ray, meet_other, closest)
 }

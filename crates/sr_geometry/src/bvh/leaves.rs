@@ -6,9 +6,9 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use super::sheared::Triangles;
-use super::simd::Simd;
-use super::{NodeRef, PrimRef, WIDTH, pages};
-use crate::{Hit, ShapeId};
+use super::simd::Eight;
+use super::{NodeRef, PrimRef, WIDE, pages};
+use crate::ShapeId;
 
 /// Coordinates of a triangle.
 const SIZE: usize = 9;
@@ -19,8 +19,8 @@ const TASK: usize = 1 << 10;
 /// Triangles in the order of the leaves. The first belongs to no leaf, and no ray hits it.
 #[derive(Debug)]
 pub(super) struct Leaves {
-    /// Leaf after leaf: by vertex, then axis, then triangle. The last leaf is followed by what completes its last row to
-    /// eight lanes.
+    /// Leaf after leaf: by axis, then vertex, then triangle. The last leaf is followed by what completes its last row to
+    /// sixteen lanes.
     vertices: Vec<f32>,
     /// Shapes, and triangles within their meshes.
     ids: Vec<[u32; 2]>,
@@ -28,7 +28,7 @@ pub(super) struct Leaves {
 
 impl Leaves {
     pub fn new() -> Self {
-        Self { vertices: vec![f32::NAN; SIZE + WIDTH - 1], ids: vec![[0; 2]] }
+        Self { vertices: vec![f32::NAN; SIZE + WIDE - 1], ids: vec![[0; 2]] }
     }
 
     /// Triangles in leaves.
@@ -45,10 +45,10 @@ impl Leaves {
     ) {
         let count: usize = leaves.iter().map(Range::len).sum();
         self.vertices.truncate(SIZE * self.ids.len());
-        pages::reserve(&mut self.vertices, SIZE * count + WIDTH - 1);
+        pages::reserve(&mut self.vertices, SIZE * count + WIDE - 1);
         pages::reserve(&mut self.ids, count);
         let (first_vertex, first_id) = (self.vertices.len(), self.ids.len());
-        self.vertices.resize(first_vertex + SIZE * count + WIDTH - 1, f32::NAN);
+        self.vertices.resize(first_vertex + SIZE * count + WIDE - 1, f32::NAN);
         self.ids.resize(first_id + count, [0; 2]);
         let (mut vertices, mut ids) = (&mut self.vertices[first_vertex..], &mut self.ids[first_id..]);
         let mut tasks = Vec::new();
@@ -78,26 +78,17 @@ impl Leaves {
         Leaf { vertices, count: leaf.count(), first: leaf.first() }
     }
 
-    /// Where a leaf starts, and its bytes. Any reference will do.
+    /// Where a leaf starts. Any reference will do.
     #[inline(always)]
-    pub fn place(&self, leaf: NodeRef) -> (*const u8, usize) {
-        const BYTES: usize = SIZE * size_of::<f32>();
-        (self.vertices.as_ptr().cast::<u8>().wrapping_add(BYTES * leaf.first()), BYTES * leaf.count())
+    pub fn place(&self, leaf: NodeRef) -> *const u8 {
+        self.vertices.as_ptr().wrapping_add(SIZE * leaf.first()).cast()
     }
 
-    /// Says which triangle a hit of [`Leaf::hit`] is.
+    /// The shape and the primitive of the triangle at a place.
     #[inline(always)]
-    pub fn name(&self, hit: &mut Hit) {
-        if hit.shape == UNNAMED {
-            let [shape, primitive] = self.ids[hit.primitive as usize];
-            (hit.shape, hit.primitive) = (ShapeId(shape), primitive);
-        }
-    }
-
-    /// Asks for what [`Leaves::name`] reads.
-    #[inline(always)]
-    pub fn prefetch_name<S: Simd>(&self, simd: S, hit: &Hit) {
-        simd.prefetch(self.ids.as_ptr().wrapping_add(hit.primitive as usize).cast());
+    pub fn name(&self, place: u32) -> (ShapeId, u32) {
+        let [shape, primitive] = self.ids[place as usize];
+        (ShapeId(shape), primitive)
     }
 
     /// The triangle with this place.
@@ -111,9 +102,6 @@ impl Leaves {
     }
 }
 
-/// The shape of a hit whose `primitive` is a place in [`Leaves`].
-const UNNAMED: ShapeId = ShapeId(PrimRef::OTHER);
-
 fn write(
     prims: &[PrimRef],
     vertices_of: impl Fn(ShapeId, u32) -> [Vec3; 3],
@@ -123,39 +111,47 @@ fn write(
     for (lane, (prim, id)) in prims.iter().zip(to_ids).enumerate() {
         *id = [prim.shape(), prim.primitive()];
         let vertices = vertices_of(ShapeId(prim.shape()), prim.primitive());
-        for (row, coordinate) in vertices.iter().flat_map(Vec3::as_ref).enumerate() {
-            to_vertices[row * prims.len() + lane] = *coordinate;
+        for (vertex, coordinates) in vertices.iter().enumerate() {
+            for axis in 0..3 {
+                to_vertices[(3 * axis + vertex) * prims.len() + lane] = coordinates[axis];
+            }
         }
     }
 }
 
-/// Up to eight triangles.
+/// Up to [`LEAF`] triangles.
 #[derive(Clone, Copy)]
 pub(super) struct Leaf<'a> {
-    /// Theirs, and at least as many more as complete the last row to eight lanes.
+    /// Theirs, and at least as many more as complete the last row to sixteen lanes.
     vertices: &'a [f32],
     pub count: usize,
-    first: usize,
+    /// The place of the first.
+    pub first: usize,
 }
 
 impl Leaf<'_> {
-    /// The hit of one of the triangles, which [`Leaves::name`] completes.
+    /// One coordinate of the first vertices, the second and the third of all triangles, and what follows them: sixteen
+    /// numbers.
+    ///
+    /// # Safety
+    /// `axis` is below 3.
     #[inline(always)]
-    pub fn hit(&self, lane: usize, t: f32, [b1, b2]: [f32; 2]) -> Hit {
-        Hit { shape: UNNAMED, primitive: (self.first + lane) as u32, b1, b2, ..Hit::none_before(t) }
+    pub unsafe fn axis(&self, axis: usize) -> &[f32; WIDE] {
+        // SAFETY: by the caller's promise there is such an axis, and as many numbers are within `vertices`.
+        unsafe { &*self.vertices.as_ptr().add(3 * axis * self.count).cast() }
     }
 }
 
-impl<S: Simd> Triangles<S> for Leaf<'_> {
+impl<S: Eight> Triangles<S> for Leaf<'_> {
     #[inline(always)]
     unsafe fn coordinate(&self, simd: S, vertex: usize, axis: usize) -> S::F {
-        let row = (3 * vertex + axis) * self.count;
+        let row = (3 * axis + vertex) * self.count;
         // SAFETY: by the caller's promise there is such a row, and its eight lanes are within `vertices`.
         simd.load(unsafe { &*self.vertices.as_ptr().add(row).cast() })
     }
 
     fn vertices(&self, lane: usize) -> [Vec3; 3] {
-        let at = |vertex: usize, axis: usize| self.vertices[(3 * vertex + axis) * self.count + lane];
+        let at = |vertex: usize, axis: usize| self.vertices[(3 * axis + vertex) * self.count + lane];
         [0, 1, 2].map(|vertex| Vec3::new(at(vertex, 0), at(vertex, 1), at(vertex, 2)))
     }
 }

@@ -1,30 +1,35 @@
 //! One 8-wide bounding volume hierarchy for triangles, spheres, disks and instances.
 //!
 //! In: [`PrimRef`]s, a box and an identity each. Out: [`Bvh`], flat arrays of nodes and of leaves of up to eight
-//! triangles, and a [`Tree`] per call. `build` decides the tree, `traverse` walks it, `interleave` does so with several
-//! rays in turn, `scan` meets the triangles of trees that are not worth a node, `packet` meets small trees with a ray in
-//! each lane; `dispatch` chooses the instruction set. Several trees (the world's and the groups') share the arrays.
+//! triangles, and a [`Tree`] per call. `build` decides the tree and `slots` where a node's children go. A `walker` is a ray
+//! on its way: `traverse` walks one, `stream` several in turn. `scan` meets the triangles of trees that are not worth a
+//! node, `packet` meets small trees with a ray in each lane; `dispatch` chooses the instruction set. Several trees (the
+//! world's and the groups') share the arrays.
 //!
 //! Invariant: every tree is at most [`MAX_DEPTH`] nodes deep, so the traversal stack cannot overflow.
 
 mod batch;
 mod build;
 mod dispatch;
-mod interleave;
 mod leaves;
 mod node;
 mod packet;
 mod pages;
 mod pieces;
+mod prepare;
 mod prim;
 mod scan;
 mod sheared;
 mod simd;
 mod slabs;
+mod slots;
 mod split;
+mod stack;
+mod stream;
 #[cfg(test)]
 mod tests;
 mod traverse;
+mod walker;
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -40,8 +45,14 @@ use pieces::Pieces;
 use prim::Lanes;
 pub(crate) use prim::PrimRef;
 
-/// Children of a node, and the most triangles of a leaf.
+/// Children of a node.
 pub(crate) const WIDTH: usize = 8;
+
+/// The most triangles of a leaf.
+const LEAF: usize = 8;
+
+/// The most triangles of a leaf that is met with a lane for each vertex, where there are sixteen.
+const NARROW: usize = 4;
 
 /// Triangles of a block that is scanned.
 const WIDE: usize = 16;

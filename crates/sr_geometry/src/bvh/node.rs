@@ -1,6 +1,7 @@
 //! Nodes, and references to what is below them.
 
 use super::WIDTH;
+use super::slots::slots;
 use crate::Bounds3;
 
 /// The largest number of triangles, of nodes or of other primitives that a [`NodeRef`] can tell apart.
@@ -11,11 +12,28 @@ pub(crate) const MAX_INDEX: usize = (1 << 28) - 1;
 /// From the highest bit: 0, 0, the node (30 bits); 0, 1, the other primitive (30); 1, triangles less one (3), the first
 /// of them (28).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(transparent)]
 pub(crate) struct NodeRef(u32);
+
+/// What a child is: see [`NodeRef::kind`].
+pub(crate) mod kind {
+    /// A node.
+    pub const NODE: usize = 0;
+    /// An other primitive, or [`super::NodeRef::DONE`].
+    pub const OTHER: usize = 1;
+    /// A leaf of up to [`super::super::NARROW`] triangles.
+    pub const NARROW: usize = 2;
+    /// A leaf of more.
+    pub const FULL: usize = 3;
+    /// How many kinds there are.
+    pub const COUNT: usize = 4;
+}
 
 impl NodeRef {
     /// No child: a triangle that no ray hits, which is always the first.
     pub const NONE: Self = Self(Self::LEAF);
+    /// What lies below all children that wait for a ray: there are no more.
+    pub const DONE: Self = Self(Self::LEAF - 1);
     const LEAF: u32 = 1 << 31;
     const OTHER: u32 = 1 << 30;
     const FIRST: u32 = MAX_INDEX as u32;
@@ -54,6 +72,12 @@ impl NodeRef {
         self.0 >= Self::LEAF
     }
 
+    /// What to do with it.
+    #[inline(always)]
+    pub fn kind(self) -> usize {
+        (self.0 >> 30) as usize
+    }
+
     /// Of a node or an other primitive.
     #[inline(always)]
     pub fn index(self) -> usize {
@@ -77,26 +101,26 @@ impl NodeRef {
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct Node {
-    /// Rows: the smallest and the largest coordinates of x, of y, of z.
-    pub bounds: [[f32; WIDTH]; 6],
+    /// By axis: the smallest, then the largest coordinates.
+    pub bounds: [[[f32; WIDTH]; 2]; 3],
     pub children: [NodeRef; WIDTH],
 }
 
 impl Node {
     /// Without children.
     pub const EMPTY: Self = {
-        let (min, max) = ([f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]);
-        Self { bounds: [min, max, min, max, min, max], children: [NodeRef::NONE; WIDTH] }
+        let empty = [[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]];
+        Self { bounds: [empty; 3], children: [NodeRef::NONE; WIDTH] }
     };
 
-    /// With at most eight children.
-    pub fn new(children: impl Iterator<Item = (Bounds3, NodeRef)>) -> Self {
+    /// With at most eight children, each in the slot that suits its place.
+    pub fn new(children: &[(Bounds3, NodeRef)]) -> Self {
         let mut node = Self::EMPTY;
-        for (slot, (bounds, child)) in children.enumerate() {
+        for (&(bounds, child), slot) in children.iter().zip(slots(children)) {
             node.children[slot] = child;
             for axis in 0..3 {
-                node.bounds[2 * axis][slot] = bounds.min[axis];
-                node.bounds[2 * axis + 1][slot] = bounds.max[axis];
+                let [min, max] = &mut node.bounds[axis];
+                (min[slot], max[slot]) = (bounds.min[axis], bounds.max[axis]);
             }
         }
         node

@@ -37,8 +37,8 @@ pub(super) fn scan<L: Lanes, const ANY: bool>(
     ray: &Ray,
     closest: &mut Hit,
 ) -> bool {
-    let sheared = Sheared::new(lanes, ray);
-    let beyond_doubt = sheared.beyond_doubt(lanes, extent);
+    let sheared = Sheared::new(ray.origin, ray.direction);
+    let beyond_doubt = lanes.splat(sheared.beyond_doubt(extent));
     let found = meet_all::<_, ANY, false>(lanes, (blocks, count), (ray, &sheared));
     if lanes.bits(lanes.lt(found.t, beyond_doubt)) == 0 {
         return conclude::<_, ANY>(lanes, blocks, (ray, &found), closest);
@@ -54,7 +54,7 @@ fn scan_exactly<const ANY: bool>(
     ray: &Ray,
     closest: &mut Hit,
 ) -> bool {
-    let sheared = Sheared::new(Portable, ray);
+    let sheared = Sheared::new(ray.origin, ray.direction);
     let found = meet_all::<_, ANY, true>(Portable, (blocks, count), (ray, &sheared));
     conclude::<_, ANY>(Portable, blocks, (ray, &found), closest)
 }
@@ -73,7 +73,7 @@ struct Found<L: Lanes> {
 fn meet_all<L: Lanes, const ANY: bool, const EXACT: bool>(
     lanes: L,
     (blocks, count): (&[TriangleBlock], usize),
-    (ray, sheared): (&Ray, &Sheared<L>),
+    (ray, sheared): (&Ray, &Sheared),
 ) -> Found<L> {
     let (zero, t) = (lanes.splat(0.0), lanes.splat(ray.t_max));
     let mut found = Found { t, b: [zero; 2], part: zero };

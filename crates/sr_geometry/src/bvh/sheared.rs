@@ -4,9 +4,10 @@
 //! sheared so that the ray becomes the +Z axis; a vertex lands on the same point for every triangle that shares it,
 //! and the sign of an edge function is never wrong, so no ray slips between neighbours.
 
-use glam::{Vec3, Vec3A};
+use glam::Vec3;
 
-use super::simd::Lanes;
+use super::leaves::Leaf;
+use super::simd::{Eight, Lanes};
 use crate::Ray;
 
 /// Rounding error of a sheared vertex, per unit of its distance from the ray's origin (largest component).
@@ -15,18 +16,6 @@ pub(super) const SHEAR_SLACK: f32 = 5.0 * f32::EPSILON;
 /// Hits nearer than this part of what the triangle spans along the ray are looked at twice. Errors are larger only for
 /// triangles that are seen several thousand times longer than wide.
 const NEAR: f32 = 1.0 / 256.0;
-
-/// An order of the axes; the fourth is none.
-#[repr(align(16))]
-pub(super) struct Order(pub [u32; 4]);
-
-/// Orders whose last axis is that along which the direction is longest, by a mask of the longest axes.
-static AXES: [Order; 8] = {
-    const X: Order = Order([1, 2, 0, 3]);
-    const Y: Order = Order([2, 0, 1, 3]);
-    const Z: Order = Order([0, 1, 2, 3]);
-    [Z, X, Y, X, Z, X, Y, X]
-};
 
 /// Triangles, transposed.
 pub(super) trait Triangles<L: Lanes> {
@@ -42,15 +31,15 @@ pub(super) trait Triangles<L: Lanes> {
 
 /// A ray, ready to meet triangles.
 #[derive(Clone, Copy)]
-pub(super) struct Sheared<L: Lanes> {
-    /// Axes: the two that are sheared, and last the one along which the direction is longest.
-    axes: [usize; 3],
-    /// Origin, in the order of `axes`.
-    origin: [L::F; 3],
+pub(super) struct Sheared {
+    /// The axis along which the direction is longest.
+    pub longest: u32,
+    /// Origin: along the two axes after the longest, in turn, and last along that.
+    pub origin: [f32; 3],
     /// What z is multiplied by: shears of the first two axes, and the scale of the last.
-    shear: [L::F; 3],
+    pub shear: [f32; 3],
     /// [`NEAR`] times the scale, which is positive here.
-    near: L::F,
+    pub near: f32,
 }
 
 /// Triangles as a ray sees them.
@@ -58,9 +47,9 @@ pub(super) struct Projected<L: Lanes> {
     /// Which triangles the line of the ray passes through.
     pub inside: L::Mask,
     /// Twice the signed areas of the triangles that the ray makes with the edges opposite to the vertices.
-    areas: [L::F; 3],
+    pub areas: [L::F; 3],
     /// Unscaled distances of the vertices along the ray.
-    z: [L::F; 3],
+    pub z: [L::F; 3],
 }
 
 /// Where a ray meets triangles.
@@ -73,28 +62,53 @@ pub(super) struct Meets<L: Lanes> {
     pub b: [L::F; 2],
 }
 
-impl<L: Lanes> Sheared<L> {
+impl Sheared {
     /// A ray that is not finite or has no direction becomes one that meets nothing: its shears or its scale are not
     /// numbers, or its scale is 0.
     #[inline(always)]
-    pub fn new(lanes: L, ray: &Ray) -> Self {
-        let (origin, direction) = (Vec3A::from(ray.origin), Vec3A::from(ray.direction));
+    pub fn new(origin: Vec3, direction: Vec3) -> Self {
         let length = direction.abs();
-        let longest = length.cmpeq(Vec3A::splat(length.max_element())).bitmask();
-        let order = &AXES[longest as usize & 7];
-        let (origin, along) = (lanes.permute(origin, order), lanes.permute(direction, order));
-        let scale = 1.0 / along.z;
+        // Of axes that are equally long the first.
+        let x = length.x >= length.y && length.x >= length.z;
+        let y = !x && length.y >= length.z;
+        let turned = |v: Vec3| {
+            let pick = |of_x, of_y, of_z| {
+                if x {
+                    of_x
+                } else if y {
+                    of_y
+                } else {
+                    of_z
+                }
+            };
+            [pick(v.y, v.z, v.x), pick(v.z, v.x, v.y), pick(v.x, v.y, v.z)]
+        };
+        let along = turned(direction);
+        let scale = 1.0 / along[2];
         Self {
-            axes: [order.0[0] as usize, order.0[1] as usize, order.0[2] as usize],
-            origin: [lanes.splat(origin.x), lanes.splat(origin.y), lanes.splat(origin.z)],
-            shear: [lanes.splat(along.x * scale), lanes.splat(along.y * scale), lanes.splat(scale)],
-            near: lanes.splat(NEAR * scale.abs()),
+            longest: if x {
+                0
+            } else if y {
+                1
+            } else {
+                2
+            },
+            origin: turned(origin),
+            shear: [along[0] * scale, along[1] * scale, scale],
+            near: NEAR * scale.abs(),
         }
+    }
+
+    /// The axes in the order of `origin`.
+    #[inline(always)]
+    pub fn axes(&self) -> [usize; 3] {
+        const AXES: [[usize; 3]; 4] = [[1, 2, 0], [2, 0, 1], [0, 1, 2], [0, 1, 2]];
+        AXES[self.longest as usize % 4]
     }
 
     /// Triangles as the ray sees them.
     #[inline(always)]
-    pub fn project(&self, lanes: L, triangles: &impl Triangles<L>) -> Projected<L> {
+    pub fn project<L: Lanes>(&self, lanes: L, triangles: &impl Triangles<L>) -> Projected<L> {
         let a = self.sheared(lanes, triangles, 0);
         let b = self.sheared(lanes, triangles, 1);
         let c = self.sheared(lanes, triangles, 2);
@@ -106,24 +120,31 @@ impl<L: Lanes> Sheared<L> {
         Projected { inside, areas, z: [a[2], b[2], c[2]] }
     }
 
+    /// The triangles of a leaf as the ray sees them.
+    #[inline(always)]
+    pub fn project_leaf<S: Eight>(&self, simd: S, leaf: &Leaf<'_>) -> Projected<S> {
+        let seen = self.project(simd, leaf);
+        Projected { inside: simd.and(seen.inside, simd.mask((1 << leaf.count) - 1)), ..seen }
+    }
+
     /// Which triangles the ray meets in (0, `t_max`), as far as rounding lets one tell: near the vertices' plane t can
     /// be wrong by more than its value, and a sliver that the ray leaves be met.
     #[inline(always)]
-    pub fn meet_roughly(&self, lanes: L, seen: &Projected<L>, t_max: L::F) -> Meets<L> {
+    pub fn meet_roughly<L: Lanes>(&self, lanes: L, seen: &Projected<L>, t_max: L::F) -> Meets<L> {
         let [of_a, of_b, of_c] = seen.areas;
         // An edge-on triangle has a zero determinant, hence t = NaN, which fails both comparisons.
         let inv_det = lanes.div(lanes.splat(1.0), lanes.add(lanes.add(of_a, of_b), of_c));
         let [b0, b1, b2] = [lanes.mul(of_a, inv_det), lanes.mul(of_b, inv_det), lanes.mul(of_c, inv_det)];
         let z = lanes.add(lanes.mul(b0, seen.z[0]), lanes.mul(b1, seen.z[1]));
         let z = lanes.add(z, lanes.mul(b2, seen.z[2]));
-        let t = lanes.mul(z, self.shear[2]);
+        let t = lanes.mul(z, lanes.splat(self.shear[2]));
         let within = lanes.and(lanes.lt(lanes.splat(0.0), t), lanes.lt(t, t_max));
         Meets { hit: lanes.and(seen.inside, within), t, b: [b1, b2] }
     }
 
     /// Which triangles the ray meets in (0, `t_max`).
     #[inline(always)]
-    pub fn meet(
+    pub fn meet<L: Lanes>(
         &self,
         lanes: L,
         (ray, triangles): (&Ray, &impl Triangles<L>),
@@ -133,7 +154,7 @@ impl<L: Lanes> Sheared<L> {
         let meets = self.meet_roughly(lanes, seen, t_max);
         let first = lanes.min(lanes.min(seen.z[0], seen.z[1]), seen.z[2]);
         let last = lanes.max(lanes.max(seen.z[0], seen.z[1]), seen.z[2]);
-        let near = lanes.mul(lanes.sub(last, first), self.near);
+        let near = lanes.mul(lanes.sub(last, first), lanes.splat(self.near));
         let mut doubtful = lanes.bits(lanes.and(meets.hit, lanes.lt(meets.t, near)));
         if doubtful == 0 {
             return meets;
@@ -151,15 +172,15 @@ impl<L: Lanes> Sheared<L> {
 
     /// Nothing that is met at this t or beyond, of triangles that together span `extent`, needs a second look.
     #[inline(always)]
-    pub fn beyond_doubt(&self, lanes: L, extent: f32) -> L::F {
-        lanes.mul(self.near, lanes.splat(extent))
+    pub fn beyond_doubt(&self, extent: f32) -> f32 {
+        self.near * extent
     }
 
     /// A vertex relative to the ray: sheared x and y, and unscaled z.
     #[inline(always)]
-    fn sheared(&self, lanes: L, triangles: &impl Triangles<L>, vertex: usize) -> [L::F; 3] {
-        let [x, y, z] = self.axes;
-        // SAFETY: `axes` is a permutation of 0, 1, 2.
+    fn sheared<L: Lanes>(&self, lanes: L, triangles: &impl Triangles<L>, vertex: usize) -> [L::F; 3] {
+        let [x, y, z] = self.axes();
+        // SAFETY: `axes` makes a permutation of 0, 1, 2.
         let [x, y, z] = unsafe {
             [
                 triangles.coordinate(lanes, vertex, x),
@@ -167,10 +188,11 @@ impl<L: Lanes> Sheared<L> {
                 triangles.coordinate(lanes, vertex, z),
             ]
         };
-        let x = lanes.sub(x, self.origin[0]);
-        let y = lanes.sub(y, self.origin[1]);
-        let z = lanes.sub(z, self.origin[2]);
-        [lanes.sub(x, lanes.mul(self.shear[0], z)), lanes.sub(y, lanes.mul(self.shear[1], z)), z]
+        let x = lanes.sub(x, lanes.splat(self.origin[0]));
+        let y = lanes.sub(y, lanes.splat(self.origin[1]));
+        let z = lanes.sub(z, lanes.splat(self.origin[2]));
+        let [shear_x, shear_y] = [lanes.splat(self.shear[0]), lanes.splat(self.shear[1])];
+        [lanes.sub(x, lanes.mul(shear_x, z)), lanes.sub(y, lanes.mul(shear_y, z)), z]
     }
 }
 

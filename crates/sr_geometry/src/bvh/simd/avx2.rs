@@ -2,11 +2,12 @@
 
 use std::arch::x86_64::*;
 
-use glam::Vec3A;
-
-use super::super::sheared::Order;
-use super::super::{WIDE, WIDTH};
-use super::{LANE, Lanes, Simd};
+use super::super::leaves::Leaf;
+use super::super::sheared::{Projected, Sheared};
+use super::super::slabs::{Line, Slabs};
+use super::super::stack::Stack;
+use super::super::{Node, WIDE, WIDTH};
+use super::{Eight, Lanes, Walk};
 
 /// Calls an intrinsic.
 macro_rules! avx2 {
@@ -16,7 +17,7 @@ macro_rules! avx2 {
     };
 }
 
-/// Proof that this processor has AVX2, BMI1, BMI2 and LZCNT: what `meet_avx2` is compiled for.
+/// Proof that this processor has AVX2, BMI1, BMI2, LZCNT and POPCNT: what `meet_avx2` is compiled for.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::bvh) struct Avx2(());
 
@@ -25,18 +26,9 @@ impl Avx2 {
         let found = is_x86_feature_detected!("avx2")
             && is_x86_feature_detected!("bmi1")
             && is_x86_feature_detected!("bmi2")
-            && is_x86_feature_detected!("lzcnt");
+            && is_x86_feature_detected!("lzcnt")
+            && is_x86_feature_detected!("popcnt");
         found.then_some(Self(()))
-    }
-
-    /// The smallest key, in every lane.
-    #[inline(always)]
-    fn broadcast_least(self, keys: __m256i) -> __m256i {
-        avx2!({
-            let least = _mm256_min_epu32(keys, _mm256_permute2x128_si256::<0x01>(keys, keys));
-            let least = _mm256_min_epu32(least, _mm256_shuffle_epi32::<0b01_00_11_10>(least));
-            _mm256_min_epu32(least, _mm256_shuffle_epi32::<0b10_11_00_01>(least))
-        })
     }
 }
 
@@ -48,11 +40,6 @@ impl Lanes for Avx2 {
     #[inline(always)]
     fn splat(self, x: f32) -> Self::F {
         avx2!(_mm256_set1_ps(x))
-    }
-    #[inline(always)]
-    fn permute(self, v: Vec3A, order: &Order) -> Vec3A {
-        // An `Order` is aligned to 16 bytes.
-        avx2!(_mm_permutevar_ps(v.into(), _mm_load_si128(std::ptr::from_ref(order).cast()))).into()
     }
     #[inline(always)]
     fn load_part(self, x: &[f32; WIDE], part: usize) -> Self::F {
@@ -166,34 +153,98 @@ impl Lanes for Avx2 {
     }
 }
 
-impl Simd for Avx2 {
-    type Keys = __m256i;
-
+impl Eight for Avx2 {
     #[inline(always)]
     fn load(self, x: &[f32; WIDTH]) -> Self::F {
         avx2!(_mm256_loadu_ps(x.as_ptr()))
     }
+}
+
+/// What moves the lanes of a mask to the front, by mask.
+static COMPRESS: [[u8; WIDTH]; 1 << WIDTH] = {
+    let mut table = [[0; WIDTH]; 1 << WIDTH];
+    let mut mask = 0;
+    while mask < table.len() {
+        let (mut lane, mut count) = (0, 0);
+        while lane < WIDTH {
+            if mask >> lane & 1 != 0 {
+                table[mask][count] = lane as u8;
+                count += 1;
+            }
+            lane += 1;
+        }
+        mask += 1;
+    }
+    table
+};
+
+impl Avx2 {
+    /// What moves the lanes of a mask to the front.
     #[inline(always)]
-    fn keys(self, x: Self::F, limit: Self::F) -> Self::Keys {
-        avx2!({
+    fn compress(self, mask: u32) -> __m256i {
+        let lanes = &COMPRESS[mask as usize % COMPRESS.len()];
+        avx2!(_mm256_cvtepu8_epi32(_mm_loadl_epi64(lanes.as_ptr().cast())))
+    }
+}
+
+/// A ray, and the order in which it meets slots.
+#[derive(Clone, Copy)]
+pub(in crate::bvh) struct Ordered {
+    slabs: Slabs<Avx2>,
+    order: __m256i,
+}
+
+impl Walk for Avx2 {
+    type Eight = Self;
+    type Slabs = Ordered;
+
+    #[inline(always)]
+    fn eight(self) -> Self {
+        self
+    }
+    #[inline(always)]
+    fn slabs(self, line: &Line) -> Ordered {
+        let order = avx2!({
             let lane = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
-            let bits = _mm256_andnot_si256(_mm256_set1_epi32(LANE as i32), _mm256_castps_si256(x));
-            let beyond = _mm256_castps_si256(_mm256_cmp_ps::<_CMP_NLE_UQ>(x, limit));
-            _mm256_or_si256(_mm256_or_si256(bits, lane), beyond)
-        })
+            _mm256_xor_si256(lane, _mm256_set1_epi32(line.flip() as i32))
+        });
+        Ordered { slabs: Slabs::new(self, line), order }
     }
     #[inline(always)]
-    fn keyed(self, keys: Self::Keys) -> u32 {
-        // The sign bits.
-        avx2!(!_mm256_movemask_ps(_mm256_castsi256_ps(keys)) as u32 & 0xff)
+    fn shorten(self, ray: &mut Ordered, t_max: f32) {
+        ray.slabs.shorten(self, t_max);
     }
     #[inline(always)]
-    fn take_least(self, keys: &mut Self::Keys) -> u32 {
-        let (all, least) = (*keys, self.broadcast_least(*keys));
+    fn enter(self, ray: &Ordered, node: &Node, stack: &mut Stack) {
+        let [enter, leave] = ray.slabs.meet(self, node);
+        let [children, enters] = stack.top();
+        // The top of the stack has room for as many children as a node has.
         avx2!({
-            *keys = _mm256_or_si256(all, _mm256_cmpeq_epi32(all, least));
-            _mm256_cvtsi256_si32(least) as u32
+            let met = _mm256_cmp_ps::<_CMP_LE_OQ>(enter, leave);
+            let met = _mm256_movemask_ps(_mm256_permutevar8x32_ps(met, ray.order)) as u32;
+            let order = _mm256_permutevar8x32_epi32(ray.order, self.compress(met));
+            let all = _mm256_load_si256(node.children.as_ptr().cast());
+            _mm256_storeu_si256(children.cast(), _mm256_permutevar8x32_epi32(all, order));
+            _mm256_storeu_ps(enters.cast(), _mm256_permutevar8x32_ps(enter, order));
+            stack.keep(met.count_ones());
+        });
+    }
+    #[inline(always)]
+    unsafe fn forget_beyond(self, t_max: f32, within: u32, from: [*mut u32; 2], to: [*mut u32; 2]) -> u32 {
+        // All is valid, by the caller's promise.
+        avx2!({
+            let (children, enters) = (_mm256_loadu_si256(from[0].cast()), _mm256_loadu_ps(from[1].cast()));
+            let near = _mm256_cmp_ps::<_CMP_LE_OQ>(enters, _mm256_set1_ps(t_max));
+            let kept = _mm256_movemask_ps(near) as u32 & within;
+            let order = self.compress(kept);
+            _mm256_storeu_si256(to[0].cast(), _mm256_permutevar8x32_epi32(children, order));
+            _mm256_storeu_ps(to[1].cast(), _mm256_permutevar8x32_ps(enters, order));
+            kept.count_ones()
         })
+    }
+    #[inline(always)]
+    fn project_narrow(self, sheared: &Sheared, leaf: &Leaf<'_>) -> Projected<Self> {
+        sheared.project_leaf(self, leaf)
     }
     #[inline(always)]
     fn prefetch(self, at: *const u8) {

@@ -16,13 +16,11 @@ pub(super) use {avx2::Avx2, avx512::Avx512};
 
 pub(super) use portable::Portable;
 
-use glam::Vec3A;
-
-use super::sheared::Order;
-use super::{WIDE, WIDTH};
-
-/// The bits of a key that tell its lane.
-pub(super) const LANE: u32 = WIDTH as u32 - 1;
+use super::leaves::Leaf;
+use super::sheared::{Projected, Sheared};
+use super::slabs::Line;
+use super::stack::Stack;
+use super::{Node, WIDE, WIDTH};
 
 /// A number of lanes. `min(a, b)` and `max(a, b)` return `b` where either is NaN.
 pub(super) trait Lanes: Copy {
@@ -31,8 +29,6 @@ pub(super) trait Lanes: Copy {
     /// How many, a divisor of [`WIDE`].
     const COUNT: usize;
     fn splat(self, x: f32) -> Self::F;
-    /// `[v[order[0]], v[order[1]], v[order[2]]]`
-    fn permute(self, v: Vec3A, order: &Order) -> Vec3A;
     /// `x[part * COUNT ..][.. COUNT]`
     fn load_part(self, x: &[f32; WIDE], part: usize) -> Self::F;
     /// `x[first ..][.. COUNT]`
@@ -72,17 +68,32 @@ pub(super) trait Lanes: Copy {
     fn least(self, x: Self::F) -> f32;
 }
 
-/// Eight lanes, with what orders the children of a node.
-pub(super) trait Simd: Lanes {
-    type Keys: Copy;
+/// Eight lanes.
+pub(super) trait Eight: Lanes {
     fn load(self, x: &[f32; WIDTH]) -> Self::F;
-    /// What orders the lanes by `x` ≥ 0: the bits of x[i] with the lowest three replaced by i.
-    /// `u32::MAX` for lanes where not x[i] ≤ `limit`[i].
-    fn keys(self, x: Self::F, limit: Self::F) -> Self::Keys;
-    /// Bit i: does lane i have a key other than `u32::MAX`? For keys of numbers that are not negative.
-    fn keyed(self, keys: Self::Keys) -> u32;
-    /// Removes and returns the smallest key, leaving `u32::MAX` in its lane.
-    fn take_least(self, keys: &mut Self::Keys) -> u32;
+}
+
+/// What walking a tree needs of an instruction set. None of it branches: several walks go in turn, and a branch that is
+/// guessed wrongly costs the work of all.
+pub(super) trait Walk: Lanes {
+    /// Eight lanes, for the triangles of a leaf.
+    type Eight: Eight;
+    /// A ray, ready to meet the boxes of nodes.
+    type Slabs: Copy;
+    fn eight(self) -> Self::Eight;
+    fn slabs(self, line: &Line) -> Self::Slabs;
+    /// Ends the ray at `t_max`.
+    fn shorten(self, slabs: &mut Self::Slabs, t_max: f32);
+    /// Pushes the children of a node that the ray meets, in the order of their slots, the nearest last.
+    fn enter(self, slabs: &Self::Slabs, node: &Node, stack: &mut Stack);
+    /// Copies those of the eight children at `from` that are `within`, bit by bit, and entered not beyond `t_max`, to
+    /// `to`; returns their number. More may be overwritten, up to eight.
+    ///
+    /// # Safety
+    /// All is valid.
+    unsafe fn forget_beyond(self, t_max: f32, within: u32, from: [*mut u32; 2], to: [*mut u32; 2]) -> u32;
+    /// A leaf's triangles, up to [`super::NARROW`], as a ray sees them.
+    fn project_narrow(self, sheared: &Sheared, leaf: &Leaf<'_>) -> Projected<Self::Eight>;
     /// Asks for the cache line of a byte that may be needed soon. Any address will do: nothing is read.
     fn prefetch(self, at: *const u8);
 }

@@ -1,10 +1,11 @@
 //! Plain Rust, which compilers turn into SSE2 or NEON.
 
-use glam::Vec3A;
-
-use super::super::sheared::Order;
-use super::super::{WIDE, WIDTH};
-use super::{LANE, Lanes, Simd};
+use super::super::leaves::Leaf;
+use super::super::sheared::{Projected, Sheared};
+use super::super::slabs::{Line, Slabs};
+use super::super::stack::Stack;
+use super::super::{Node, WIDE, WIDTH};
+use super::{Eight, Lanes, Walk};
 
 /// Eight lanes in an array.
 #[derive(Clone, Copy, Debug)]
@@ -23,11 +24,6 @@ impl Lanes for Portable {
     #[inline(always)]
     fn splat(self, x: f32) -> Self::F {
         [x; WIDTH]
-    }
-    #[inline(always)]
-    fn permute(self, v: Vec3A, order: &Order) -> Vec3A {
-        let [x, y, z, _] = order.0;
-        Vec3A::new(v[x as usize], v[y as usize], v[z as usize])
     }
     #[inline(always)]
     fn load_part(self, x: &[f32; WIDE], part: usize) -> Self::F {
@@ -124,26 +120,65 @@ impl Lanes for Portable {
     }
 }
 
-impl Simd for Portable {
-    type Keys = [u32; WIDTH];
-
+impl Eight for Portable {
     #[inline(always)]
     fn load(self, x: &[f32; WIDTH]) -> Self::F {
         *x
     }
+}
+
+/// A ray, and the order in which it meets slots.
+#[derive(Clone, Copy)]
+pub(in crate::bvh) struct Ordered {
+    slabs: Slabs<Portable>,
+    flip: u32,
+}
+
+impl Walk for Portable {
+    type Eight = Self;
+    type Slabs = Ordered;
+
     #[inline(always)]
-    fn keys(self, x: Self::F, limit: Self::F) -> Self::Keys {
-        each(|i| if x[i] <= limit[i] { x[i].to_bits() & !LANE | i as u32 } else { u32::MAX })
+    fn eight(self) -> Self {
+        self
     }
     #[inline(always)]
-    fn keyed(self, keys: Self::Keys) -> u32 {
-        keys.iter().enumerate().fold(0, |lanes, (i, &key)| lanes | u32::from(key != u32::MAX) << i)
+    fn slabs(self, line: &Line) -> Ordered {
+        Ordered { slabs: Slabs::new(self, line), flip: line.flip() }
     }
     #[inline(always)]
-    fn take_least(self, keys: &mut Self::Keys) -> u32 {
-        let least = keys.iter().fold(u32::MAX, |least, &key| least.min(key));
-        *keys = each(|i| if keys[i] == least { u32::MAX } else { keys[i] });
-        least
+    fn shorten(self, slabs: &mut Ordered, t_max: f32) {
+        slabs.slabs.shorten(self, t_max);
+    }
+    #[inline(always)]
+    fn enter(self, ray: &Ordered, node: &Node, stack: &mut Stack) {
+        let [enter, leave] = ray.slabs.meet(self, node);
+        for place in 0..WIDTH as u32 {
+            let slot = (place ^ ray.flip) as usize % WIDTH;
+            let [child, at] = stack.top();
+            // SAFETY: the top of the stack has room for as many children as a node has.
+            unsafe {
+                (*child.cast(), *at.cast()) = (node.children[slot], enter[slot]);
+                stack.keep(u32::from(enter[slot] <= leave[slot]));
+            }
+        }
+    }
+    #[inline(always)]
+    unsafe fn forget_beyond(self, t_max: f32, within: u32, from: [*mut u32; 2], to: [*mut u32; 2]) -> u32 {
+        let mut kept = 0;
+        for i in 0..WIDTH {
+            // SAFETY: all is valid, by the caller's promise.
+            unsafe {
+                let (child, enter) = (*from[0].add(i), *from[1].add(i));
+                (*to[0].add(kept), *to[1].add(kept)) = (child, enter);
+                kept += usize::from(within >> i & 1 != 0 && f32::from_bits(enter) <= t_max);
+            }
+        }
+        kept as u32
+    }
+    #[inline(always)]
+    fn project_narrow(self, sheared: &Sheared, leaf: &Leaf<'_>) -> Projected<Self> {
+        sheared.project_leaf(self, leaf)
     }
     #[inline(always)]
     fn prefetch(self, _at: *const u8) {}

@@ -1,1 +1,0 @@
-"""Measuring beside other renderers; ``benches/run.py`` is the way in."""

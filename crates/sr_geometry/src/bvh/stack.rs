@@ -1,0 +1,106 @@
+//! What a walk comes back to.
+
+use std::mem::MaybeUninit;
+
+use super::simd::Walk;
+use super::{MAX_DEPTH, NodeRef, WIDTH};
+
+/// [`NodeRef::DONE`], what every node on the way to a leaf leaves, and what is written at a time.
+const CAPACITY: usize = 1 + (WIDTH - 1) * MAX_DEPTH + 2 * WIDTH;
+
+/// Children that wait for their turn, the next one last, and where the ray enters them. The first is [`NodeRef::DONE`].
+///
+/// A hit puts children out of reach. Either all of them are removed at once, or each is looked at when its turn comes.
+pub(super) struct Stack {
+    children: [MaybeUninit<NodeRef>; CAPACITY],
+    enters: [MaybeUninit<f32>; CAPACITY],
+    depth: usize,
+}
+
+impl Stack {
+    /// Holds no more than a child.
+    #[inline(always)]
+    pub fn reset(&mut self, child: NodeRef) {
+        self.children[0].write(NodeRef::DONE);
+        self.enters[0].write(0.0);
+        self.children[1].write(child);
+        self.enters[1].write(0.0);
+        self.depth = 2;
+    }
+
+    /// Takes the last child. Never to be called after it was [`NodeRef::DONE`].
+    #[inline(always)]
+    pub fn pop(&mut self) -> NodeRef {
+        debug_assert!(self.depth > 0);
+        self.depth -= 1;
+        // SAFETY: every entry below `depth` was written.
+        unsafe { self.children.get_unchecked(self.depth).assume_init() }
+    }
+
+    /// As `pop`, but for children that are entered beyond `t_max`.
+    #[inline(always)]
+    pub fn pop_within(&mut self, t_max: f32) -> NodeRef {
+        loop {
+            let child = self.pop();
+            // SAFETY: the entry was written.
+            if unsafe { self.enters.get_unchecked(self.depth).assume_init() } <= t_max {
+                return child;
+            }
+        }
+    }
+
+    /// The last children, from `depth` on.
+    #[inline(always)]
+    pub fn since(&self, depth: usize) -> &[NodeRef] {
+        let count = self.depth.saturating_sub(depth);
+        // SAFETY: every entry below `depth` was written.
+        unsafe { std::slice::from_raw_parts(self.children.as_ptr().add(self.depth - count).cast(), count) }
+    }
+
+    #[inline(always)]
+    pub fn depth(&self) -> usize {
+        self.depth
+    }
+
+    /// Where the next [`WIDTH`] children and the places where they are entered may be written.
+    #[inline(always)]
+    pub fn top(&mut self) -> [*mut u32; 2] {
+        self.at(self.depth)
+    }
+
+    /// Keeps the first `count` of those that were written to the top.
+    ///
+    /// # Safety
+    /// They were written, and a node has as many children.
+    #[inline(always)]
+    pub unsafe fn keep(&mut self, count: u32) {
+        self.depth += count as usize;
+    }
+
+    /// Forgets all children if `met`.
+    #[inline(always)]
+    pub fn clear_if(&mut self, met: bool) {
+        self.depth = if met { 1 } else { self.depth };
+    }
+
+    /// Forgets the children that are entered beyond `t_max`.
+    #[inline(always)]
+    pub fn forget_beyond<S: Walk>(&mut self, simd: S, t_max: f32) {
+        let (mut kept, mut first) = (0, 0);
+        while first < self.depth {
+            let within = (1_u32 << (self.depth - first).min(WIDTH)) - 1;
+            // SAFETY: `kept` is not beyond `first`, which is below `depth`, and that leaves room for WIDTH more.
+            kept += unsafe { simd.forget_beyond(t_max, within, self.at(first), self.at(kept)) } as usize;
+            first += WIDTH;
+        }
+        self.depth = kept;
+    }
+
+    #[inline(always)]
+    fn at(&mut self, depth: usize) -> [*mut u32; 2] {
+        debug_assert!(depth + WIDTH <= CAPACITY);
+        let (children, enters) = (self.children.as_mut_ptr(), self.enters.as_mut_ptr());
+        // A `NodeRef` is a `u32`.
+        [children.wrapping_add(depth).cast(), enters.wrapping_add(depth).cast()]
+    }
+}

@@ -1,0 +1,162 @@
+//! A ray on its way through a tree: what it does at a node, at a leaf and at an other primitive.
+
+use std::hint::select_unpredictable;
+use std::mem::MaybeUninit;
+
+use super::leaves::Leaf;
+use super::sheared::{Meets, Sheared};
+use super::simd::{Eight, Lanes, Walk};
+use super::slabs::Line;
+use super::stack::Stack;
+use super::{Bvh, Node, NodeRef};
+use crate::{Hit, NO_INSTANCE, Ray};
+
+/// Of what is no triangle.
+const NOWHERE: u32 = u32::MAX;
+
+/// A ray under way. `ANY`: any hit will do, and is not told.
+pub(super) struct Walker<S: Walk, const ANY: bool> {
+    ray: Ray,
+    sheared: Sheared,
+    slabs: S::Slabs,
+    pub stack: Stack,
+    met: bool,
+    /// The closest hit so far, or the end of the ray.
+    t: f32,
+    b1: f32,
+    b2: f32,
+    /// Where the triangle that was hit is in the leaves, or [`NOWHERE`].
+    place: u32,
+    /// What was hit if no triangle was.
+    other: Hit,
+}
+
+impl<S: Walk, const ANY: bool> Walker<S, ANY> {
+    /// Starts at the root of a tree.
+    #[inline(always)]
+    pub fn start<'p>(
+        place: &'p mut MaybeUninit<Self>,
+        simd: S,
+        root: NodeRef,
+        (ray, sheared, line): (&Ray, &Sheared, &Line),
+    ) -> &'p mut Self {
+        let walker = place.as_mut_ptr();
+        // SAFETY: everything is written, but for the places of the stack that are not in use.
+        unsafe {
+            (&raw mut (*walker).ray).write(*ray);
+            (&raw mut (*walker).sheared).write(*sheared);
+            (&raw mut (*walker).slabs).write(simd.slabs(line));
+            (&raw mut (*walker).met).write(false);
+            (&raw mut (*walker).t).write(ray.t_max);
+            (&raw mut (*walker).b1).write(0.0);
+            (&raw mut (*walker).b2).write(0.0);
+            (&raw mut (*walker).place).write(NOWHERE);
+            (&raw mut (*walker).other).write(Hit::none_before(ray.t_max));
+            (*walker).stack.reset(root);
+            &mut *walker
+        }
+    }
+
+    /// What is to be visited next.
+    #[inline(always)]
+    pub fn next(&mut self) -> NodeRef {
+        self.stack.pop_within(self.t)
+    }
+
+    /// As `next`, where nothing that is beyond the closest hit waits any more. Without a branch; asks for its memory.
+    #[inline(always)]
+    pub fn next_of_many(&mut self, simd: S, bvh: &Bvh) -> NodeRef {
+        let next = self.stack.pop();
+        if bvh.prefetches {
+            bvh.prefetch(simd, next);
+        }
+        next
+    }
+
+    /// Forgets what waits beyond the closest hit.
+    #[inline(always)]
+    pub fn forget_beyond(&mut self, simd: S) {
+        if !ANY {
+            self.stack.forget_beyond(simd, self.t);
+        }
+    }
+
+    /// Asks for the memory of those that wait.
+    #[inline(always)]
+    pub fn prefetch_since(&self, simd: S, bvh: &Bvh, depth: usize) {
+        for &child in self.stack.since(depth) {
+            bvh.prefetch(simd, child);
+        }
+    }
+
+    #[inline(always)]
+    pub fn visit_node(&mut self, simd: S, node: &Node) {
+        simd.enter(&self.slabs, node, &mut self.stack);
+    }
+
+    /// `NARROW`: the leaf has at most [`super::NARROW`] triangles. `BRANCHES`: guesses whether there is a hit, instead of
+    /// waiting for the answer.
+    #[inline(always)]
+    pub fn visit_leaf<const NARROW: bool, const BRANCHES: bool>(&mut self, simd: S, leaf: &Leaf<'_>) {
+        let seen = match NARROW {
+            true => simd.project_narrow(&self.sheared, leaf),
+            false => self.sheared.project_leaf(simd.eight(), leaf),
+        };
+        let eight = simd.eight();
+        let t_max = eight.splat(self.t);
+        let meets = self.sheared.meet(eight, (&self.ray, leaf), &seen, t_max);
+        let met = eight.bits(meets.hit) != 0;
+        if BRANCHES && !met {
+            return;
+        }
+        self.met |= met;
+        if ANY {
+            self.stack.clear_if(met);
+            return;
+        }
+        self.keep_closest(eight, leaf, &meets);
+        simd.shorten(&mut self.slabs, self.t);
+    }
+
+    /// Keeps the closest of a leaf's hits, if there are any. Without a branch.
+    #[inline(always)]
+    fn keep_closest<E: Eight>(&mut self, eight: E, leaf: &Leaf<'_>, meets: &Meets<E>) {
+        let t = eight.select(meets.hit, meets.t, eight.splat(f32::INFINITY));
+        let least = eight.least(t);
+        let at = eight.bits(eight.and(meets.hit, eight.le(t, eight.splat(least))));
+        // No lane if there is no hit.
+        let lane = at.trailing_zeros() as usize;
+        let [b1, b2] = [eight.extract(meets.b[0], lane), eight.extract(meets.b[1], lane)];
+        let any = at != 0;
+        self.t = select_unpredictable(any, least, self.t);
+        self.b1 = select_unpredictable(any, b1, self.b1);
+        self.b2 = select_unpredictable(any, b2, self.b2);
+        self.place = select_unpredictable(any, (leaf.first + lane) as u32, self.place);
+    }
+
+    #[inline(always)]
+    pub fn visit_other(&mut self, simd: S, other: u32, meet_other: impl Fn(u32, &Ray) -> Option<Hit>) {
+        let Some(hit) = meet_other(other, &Ray { t_max: self.t, ..self.ray }) else {
+            return;
+        };
+        (self.met, self.t, self.place, self.other) = (true, hit.t, NOWHERE, hit);
+        if ANY {
+            self.stack.clear_if(true);
+            return;
+        }
+        simd.shorten(&mut self.slabs, hit.t);
+    }
+
+    /// What was hit.
+    #[inline(always)]
+    pub fn hit(&self, bvh: &Bvh) -> Option<Hit> {
+        if !self.met {
+            return None;
+        }
+        if ANY || self.place == NOWHERE {
+            return Some(self.other);
+        }
+        let (shape, primitive) = bvh.leaves.name(self.place);
+        Some(Hit { t: self.t, b1: self.b1, b2: self.b2, shape, primitive, instance: NO_INSTANCE })
+    }
+}
