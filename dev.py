@@ -6,6 +6,8 @@
     python3 dev.py build                             build only
     python3 dev.py test                              formatting, lints, types, documentation, all tests
     python3 dev.py test -k merge                     only Python's tests, with these arguments for pytest
+    python3 dev.py instructions                      count instructions, compare them with the stored counts
+    python3 dev.py bench --quick                     measure beside other renderers, see benches/README.md
 
 Needs Rust (rustup.rs) and Python 3.11 or newer with pip; nothing else.
 """
@@ -22,7 +24,14 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent
 VENV = ROOT / ".venv"
-PYTHON = VENV / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
+
+
+def python_of(venv):
+    """The interpreter of a virtual environment."""
+    return venv / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
+
+
+PYTHON = python_of(VENV)
 STAMP = VENV / "steradian-built-from.txt"
 TOOLS_STAMP = VENV / "steradian-test-tools.txt"
 SOURCES = (
@@ -34,6 +43,8 @@ SOURCES = (
     "rust-toolchain.toml",
     "README.md",
 )
+# Commands that are scripts of their own.
+SCRIPTS = {"instructions": "benches/instructions.py", "bench": "benches/run.py"}
 OLDEST_PYTHON = (3, 11)
 # The last line of a test runner, such as "test result: ok. 12 passed" or "31 passed in 4.20s".
 CLOSING_LINE = re.compile(
@@ -49,6 +60,8 @@ def main(arguments):
     check_tools()
     if arguments[0] == "test":
         return test(arguments[1:])
+    if arguments[0] in SCRIPTS:
+        return run_ignoring_interrupts([sys.executable, str(ROOT / SCRIPTS[arguments[0]]), *arguments[1:]])
     for name in arguments[1:]:
         if name.endswith(".xml") and not Path(name).exists():
             # Said at once, and not after a build of some minutes.
@@ -175,35 +188,36 @@ def install_test_tools():
     once(TOOLS_STAMP, "\n".join(tools), "installing what the tests need", tools)
 
 
-def once(stamp, wanted, what, requirements):
-    """Installs into .venv, unless ``stamp`` says that it was done for the same ``wanted``."""
+def once(stamp, wanted, what, requirements, python=PYTHON):
+    """Installs for ``python``, unless ``stamp`` says that it was done for the same ``wanted``."""
     if stamp.exists() and stamp.read_text(encoding="utf-8") == wanted:
         return
     say(what)
     stamp.unlink(missing_ok=True)
-    run_quietly([*pip(), "install", "--disable-pip-version-check", *requirements])
+    run_quietly([*pip(python), "install", "--disable-pip-version-check", *requirements])
     stamp.write_text(wanted, encoding="utf-8")
 
 
-def make_venv():
-    """Makes .venv unless there is one that works."""
-    if PYTHON.exists() and subprocess.run([str(PYTHON), "-c", ""], capture_output=True).returncode == 0:
+def make_venv(venv=VENV):
+    """Makes an environment unless there is one that works."""
+    python = python_of(venv)
+    if python.exists() and subprocess.run([str(python), "-c", ""], capture_output=True).returncode == 0:
         return
-    command = [sys.executable, "-m", "venv", "--clear", str(VENV)]
+    command = [sys.executable, "-m", "venv", "--clear", str(venv)]
     if importlib.util.find_spec("ensurepip") is None:
-        # Debian ships ensurepip apart: this interpreter's pip then serves .venv as well.
+        # Debian ships ensurepip apart: this interpreter's pip then serves the environment as well.
         if importlib.util.find_spec("pip") is None:
             sys.exit("dev.py needs pip, which this Python lacks (Debian, Ubuntu: apt install python3-venv)")
         command.append("--without-pip")
-    say("making .venv")
+    say(f"making {venv.name}")
     run_quietly(command)
 
 
-def pip():
-    """The pip that installs into .venv."""
-    if subprocess.run([str(PYTHON), "-c", "import pip"], capture_output=True).returncode == 0:
-        return [str(PYTHON), "-m", "pip"]
-    return [sys.executable, "-m", "pip", "--python", str(PYTHON)]
+def pip(python=PYTHON):
+    """The pip that installs for ``python``."""
+    if subprocess.run([str(python), "-c", "import pip"], capture_output=True).returncode == 0:
+        return [str(python), "-m", "pip"]
+    return [sys.executable, "-m", "pip", "--python", str(python)]
 
 
 def source_hash():

@@ -1,0 +1,1 @@
+"""Measuring beside other renderers; ``benches/run.py`` is the way in."""
