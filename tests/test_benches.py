@@ -100,6 +100,11 @@ box\tany\tembree\t30 33
 box\tany\tembree-packets\t90 90
 """
 
+BUILD = """\
+box\tbuild_wall\tsteradian\t2.0 4.0
+box\tbuild_wall\tembree\t1.0 2.0
+"""
+
 
 def test_rays_are_compared_by_the_better_of_each() -> None:
     found = rays.parse(RAYS)
@@ -196,6 +201,31 @@ def _check_pbrt(renderer: pbrt.Pbrt) -> None:
     text = (renderer.path / "scene.pbrt").read_text()
     assert text.count("AreaLightSource") == 1 and text.count('Shape "plymesh"') == 8
     assert '"integer maxdepth" [ 7 ]' in text
+
+
+def test_a_page_says_what_is_missing_and_what_failed() -> None:
+    results = {
+        "machine": {"processor": "abacus", "cores": 2, "system": "wood", "load_before": 0.5},
+        "date": "today",
+        "commit": "abc",
+        "quick": True,
+        "runs": 3,
+        "missing": {"pbrt-v4": "there is no pbrt"},
+        "failed": {"large": "out of memory"},
+        "studies": {
+            "rays": {"embree": "e", "threads": 2, "load": [None, 1.0], "scenes": rays.parse(RAYS + BUILD)}
+        },
+    }
+    page = report.page(results)
+    for text in (
+        "abacus",
+        "load was 0.5",
+        "small sizes",
+        "pbrt-v4: there is no pbrt",
+        "`large` failed: out of",
+    ):
+        assert text in page
+    assert "| Embree, coherent packets of 16 " in page and "2.00 / 0.7" in page
 
 
 def test_arguments() -> None:

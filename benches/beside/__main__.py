@@ -36,14 +36,17 @@ def main() -> int:
         "studies": {},
         "failed": {},
     }
+    folder = _folder(given, options)
     for name in given.only or NAMES:
         try:
             results["studies"][name] = study(name).measure(options)
         except (OSError, RuntimeError, subprocess.SubprocessError) as error:
             results["failed"][name] = str(error)
             say(f"{name} failed: {error}")
-    text = report.page(results)
-    _store(results, text, _folder(given, options))
+        # After each: what took minutes is not lost if a later one is interrupted.
+        text = report.page(results)
+        _store(results, text, folder)
+    say(f"wrote {folder / 'beside.md'} and beside.json")
     if given.json:
         json.dump(results, sys.stdout, indent=1)
         print()
@@ -90,7 +93,6 @@ def _store(results: dict[str, Any], text: str, folder: Path) -> None:
     (folder / "beside.json").write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
     if "growth" in results["studies"]:
         growth.plot(results["studies"]["growth"], folder / "growth.svg")
-    say(f"wrote {folder / 'beside.md'} and beside.json")
 
 
 def _commit() -> str:

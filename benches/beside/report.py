@@ -6,7 +6,7 @@ from typing import Any
 
 from beside.paired import Bar
 from beside.studies import NAMES, study
-from beside.table import number, table
+from beside.table import number, paragraph, table
 
 INTRODUCTION = """\
 Written by `python3 benches/run.py`, which makes an environment of its own, installs the peers and measures
@@ -17,16 +17,18 @@ be, is said in [benches/README.md](../benches/README.md)."""
 def page(results: dict[str, Any]) -> str:
     """The text of the page."""
     machine = results["machine"]
+    small = " **of small sizes, which say little**" if results["quick"] else ""
+    before = machine["load_before"]
+    busy = "Nobody counts the machine's load" if before is None else f"The machine's load was {before:.1f}"
     lines = [
         "# Beside other renderers",
         "",
         INTRODUCTION,
         "",
-        f"{machine['processor']}, {machine['cores']} cores, {machine['system']}; {results['date']}; commit "
-        f"{results['commit']}; medians of {results['runs']} runs"
-        + (" **of small sizes, which say little**" if results["quick"] else "")
-        + ".",
-        "",
+        *paragraph(
+            f"{machine['processor']}, {machine['cores']} cores, {machine['system']}; {results['date']}; "
+            f"commit {results['commit']}; medians of {results['runs']} runs{small}. {busy} when it began."
+        ),
     ]
     if results["missing"]:
         lines += ["Not there, and so not measured:", ""]
