@@ -1,16 +1,24 @@
 //! Vertex normals from triangles.
 
 use glam::Vec3;
+use rayon::prelude::*;
 use sr_scene::MeshDesc;
+
+/// Triangles whose angles are worked out in parallel before they are summed up in order.
+const BLOCK: usize = 1 << 16;
 
 /// Each vertex's mean of the normals of its triangles, weighted by the triangle's angle there
 /// (Thürmer & Wüthrich 1998), as Mitsuba does; zero where no triangle is.
 pub fn smooth(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
     let mut normals = vec![Vec3::ZERO; positions.len()];
-    for triangle in triangles {
-        if let Some((normal, angles)) = normal_and_angles(triangle.map(|i| positions[i as usize])) {
-            for (&index, angle) in triangle.iter().zip(angles) {
-                normals[index as usize] += normal * angle;
+    let mut known = Vec::with_capacity(BLOCK.min(triangles.len()));
+    for block in triangles.chunks(BLOCK) {
+        let corners = block.par_iter().map(|t| normal_and_angles(t.map(|i| positions[i as usize])));
+        corners.collect_into_vec(&mut known);
+        for (triangle, known) in block.iter().zip(&known) {
+            let Some((normal, angles)) = known else { continue };
+            for (&index, &angle) in triangle.iter().zip(angles) {
+                normals[index as usize] += *normal * angle;
             }
         }
     }

@@ -36,6 +36,8 @@ pub fn encode_png(
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    // A twentieth of the default's time for files that are 3 to 16 % larger: noise does not compress.
+    encoder.set_compression(png::Compression::Fast);
     encoder.add_text_chunk("Software".into(), SOFTWARE.into())?;
     for (name, value) in metadata.entries() {
         encoder.add_itxt_chunk(name, value.to_string())?;

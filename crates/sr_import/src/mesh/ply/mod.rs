@@ -1,10 +1,14 @@
-//! Stanford PLY, text and binary of both byte orders.
+//! Stanford PLY: headers and text by a library, binary of both byte orders by [`binary`].
+
+mod binary;
 
 use std::io::{BufRead, Cursor};
 
 use glam::{Vec2, Vec3};
 use ply_rs_bw::parser::{Parser, Reader};
-use ply_rs_bw::ply::{ElementDef, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType};
+use ply_rs_bw::ply::{
+    ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyDef, PropertyType,
+};
 use sr_scene::MeshDesc;
 
 use super::{MAX_ELEMENTS, fan};
@@ -14,15 +18,25 @@ pub fn parse(bytes: &[u8]) -> Result<MeshDesc, String> {
     let mut reader = Reader::new(Cursor::new(bytes));
     let header = Parser::<Ignored>::new().read_header(&mut reader).map_err(|e| one_line(&e))?;
     let mut mesh = MeshDesc::default();
+    let mut data = match header.encoding {
+        Encoding::Ascii => None,
+        other => binary::Data::after_header(bytes, other == Encoding::BinaryBigEndian),
+    };
     for (name, element) in &header.elements {
         // An element takes at least a byte: a count beyond the file's size is a lie that would cost time and memory.
         if element.count > bytes.len().min(MAX_ELEMENTS) {
             return Err(format!("{} elements \"{name}\" do not fit into the file", element.count));
         }
-        match name.as_str() {
-            "vertex" => vertices(&mut reader, element, &header, &mut mesh)?,
-            "face" => faces(&mut reader, element, &header, &mut mesh)?,
-            _ => {
+        if name == "vertex" && !Columns::of(element).positions {
+            return Err("its vertices have no x, y, z".into());
+        }
+        match (name.as_str(), &mut data) {
+            ("vertex", Some(data)) => data.vertices(element, &mut mesh)?,
+            ("vertex", None) => vertices(&mut reader, element, &header, &mut mesh)?,
+            ("face", Some(data)) => data.faces(element, &mut mesh)?,
+            ("face", None) => faces(&mut reader, element, &header, &mut mesh)?,
+            (_, Some(data)) => data.skip_element(element)?,
+            (_, None) => {
                 read::<Ignored>(&mut reader, element, &header)?;
             }
         }
@@ -47,18 +61,14 @@ fn vertices(
     header: &Header,
     mesh: &mut MeshDesc,
 ) -> Result<(), String> {
-    let has = |name: &str| element.properties.contains_key(name);
-    if !(has("x") && has("y") && has("z")) {
-        return Err("its vertices have no x, y, z".into());
-    }
+    let columns = Columns::of(element);
     let vertices: Vec<Vertex> = read(reader, element, header)?;
-    mesh.positions = vertices.iter().map(|v| v.position).collect();
-    if has("nx") && has("ny") && has("nz") {
-        mesh.normals = vertices.iter().map(|v| v.normal).collect();
+    mesh.positions = vertices.iter().map(|Vertex(v)| Vec3::new(v[0], v[1], v[2])).collect();
+    if columns.normals {
+        mesh.normals = vertices.iter().map(|Vertex(v)| Vec3::new(v[3], v[4], v[5])).collect();
     }
-    let pairs = [("u", "v"), ("s", "t"), ("texture_u", "texture_v"), ("texture_s", "texture_t")];
-    if pairs.iter().any(|(u, v)| has(u) && has(v)) {
-        mesh.uvs = vertices.iter().map(|v| v.uv).collect();
+    if columns.uvs {
+        mesh.uvs = vertices.iter().map(|Vertex(v)| Vec2::new(v[6], v[7])).collect();
     }
     Ok(())
 }
@@ -69,9 +79,8 @@ fn faces(
     header: &Header,
     mesh: &mut MeshDesc,
 ) -> Result<(), String> {
-    let list = ["vertex_indices", "vertex_index"].iter().find_map(|name| element.properties.get(*name));
-    if element.count > 0 && !list.is_some_and(|p| matches!(p.data_type, PropertyType::List(..))) {
-        return Err("its faces have no list of vertex indices".into());
+    if element.count > 0 && index_list(element).is_none() {
+        return Err(NO_INDICES.into());
     }
     mesh.triangles.reserve(element.count);
     for (number, face) in read::<Face>(reader, element, header)?.into_iter().enumerate() {
@@ -88,12 +97,55 @@ fn one_line(error: &dyn std::fmt::Display) -> String {
     crate::values::shown(error.to_string().lines().next().unwrap_or("it cannot be read")).replace('\t', " ")
 }
 
-#[derive(Default)]
-struct Vertex {
-    position: Vec3,
-    normal: Vec3,
-    uv: Vec2,
+const NO_INDICES: &str = "its faces have no list of vertex indices";
+
+/// The property that holds a face's vertices.
+fn index_list(element: &ElementDef) -> Option<(&String, &PropertyDef)> {
+    let found =
+        ["vertex_indices", "vertex_index"].iter().find_map(|&n| element.properties.get_key_value(n))?;
+    matches!(found.1.data_type, PropertyType::List(..)).then_some(found)
 }
+
+/// Which of a vertex's properties there are.
+struct Columns {
+    positions: bool,
+    normals: bool,
+    uvs: bool,
+}
+
+impl Columns {
+    /// Position, normal, texture coordinates, one after another.
+    const SLOTS: usize = 8;
+
+    fn of(element: &ElementDef) -> Self {
+        let has = |name: &str| element.properties.contains_key(name);
+        let pairs = [("u", "v"), ("s", "t"), ("texture_u", "texture_v"), ("texture_s", "texture_t")];
+        Self {
+            positions: has("x") && has("y") && has("z"),
+            normals: has("nx") && has("ny") && has("nz"),
+            uvs: pairs.iter().any(|(u, v)| has(u) && has(v)),
+        }
+    }
+
+    /// Where a property goes.
+    fn slot(name: &str) -> Option<usize> {
+        Some(match name {
+            "x" => 0,
+            "y" => 1,
+            "z" => 2,
+            "nx" => 3,
+            "ny" => 4,
+            "nz" => 5,
+            "u" | "s" | "texture_u" | "texture_s" => 6,
+            "v" | "t" | "texture_v" | "texture_t" => 7,
+            _ => return None,
+        })
+    }
+}
+
+/// A vertex of a text file, by [`Columns::slot`].
+#[derive(Default)]
+struct Vertex([f32; Columns::SLOTS]);
 
 impl PropertyAccess for Vertex {
     fn new() -> Self {
@@ -101,18 +153,8 @@ impl PropertyAccess for Vertex {
     }
 
     fn set_float(&mut self, name: &str, value: f32) -> PropertyAccessResult {
-        let slot = match name {
-            "x" => &mut self.position.x,
-            "y" => &mut self.position.y,
-            "z" => &mut self.position.z,
-            "nx" => &mut self.normal.x,
-            "ny" => &mut self.normal.y,
-            "nz" => &mut self.normal.z,
-            "u" | "s" | "texture_u" | "texture_s" => &mut self.uv.x,
-            "v" | "t" | "texture_v" | "texture_t" => &mut self.uv.y,
-            _ => return PropertyAccessResult::Ignored,
-        };
-        *slot = value;
+        let Some(slot) = Columns::slot(name) else { return PropertyAccessResult::Ignored };
+        self.0[slot] = value;
         PropertyAccessResult::Set
     }
 
