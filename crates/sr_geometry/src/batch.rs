@@ -206,13 +206,13 @@ impl Surfaces {
 impl Geometry {
     /// The closest hits of the first `count` rays. What `hits` holds beyond them is left open.
     pub fn intersect_batch(&self, rays: &Rays, count: usize, hits: &mut Hits) {
-        let meet_other = |other, ray: &_| self.intersect_other(other, ray);
+        let meet_other = |other, ray: &_| self.meet_other(other, ray);
         self.bvh.intersect_batch(&self.world, (rays, count), meet_other, hits);
     }
 
     /// Which of the first `count` rays hit anything? What `occluded` holds beyond them is left open.
     pub fn occluded_batch(&self, rays: &Rays, count: usize, occluded: &mut [bool; BATCH]) {
-        let meet_other = |other, ray: &_| self.intersect_other(other, ray);
+        let meet_other = |other, ray: &_| self.meet_other(other, ray);
         self.bvh.occluded_batch(&self.world, (rays, count), meet_other, occluded);
     }
 }

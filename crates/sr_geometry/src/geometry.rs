@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::{DVec3, Vec2, Vec3};
 use rayon::prelude::*;
 
-use crate::bvh::{Bvh, MAX_INDEX, PrimRef, Round, Tree};
+use crate::bvh::{Bvh, MAX_INDEX, Met, PrimRef, Round, Tree};
 use crate::instance::PlacedGroup;
 use crate::{
     Bounds3, Disk, GeometryError, GeometryInput, Hit, NO_INSTANCE, Ray, Shape, ShapeId, Sphere, TriangleMesh,
@@ -200,34 +200,43 @@ impl Geometry {
     /// The closest hit, if any.
     #[inline]
     pub fn intersect(&self, ray: &Ray) -> Option<Hit> {
-        self.bvh.intersect(&self.world, ray, |other, ray| self.intersect_other(other, ray))
+        self.bvh.intersect(&self.world, ray, |other, ray| self.meet_other(other, ray))
     }
 
     /// Does the ray hit anything?
     #[inline]
     pub fn occluded(&self, ray: &Ray) -> bool {
-        self.bvh.occluded(&self.world, ray, |other, ray| self.intersect_other(other, ray))
+        self.bvh.occluded(&self.world, ray, |other, ray| self.meet_other(other, ray))
     }
 
     /// Out of line, so that the walk over triangles stays small.
     #[inline(never)]
-    pub(crate) fn intersect_other(&self, other: u32, ray: &Ray) -> Option<Hit> {
+    pub(crate) fn meet_other(&self, other: u32, ray: &Ray) -> Met {
         match self.others[other as usize] {
             Other::Sphere { shape, index } => {
-                let t = self.spheres[index as usize].intersect(ray)?;
-                Some(Hit { t, b1: 0.0, b2: 0.0, shape, primitive: 0, instance: NO_INSTANCE })
+                Met::Hit(self.spheres[index as usize].intersect(ray).map(|t| Hit {
+                    t,
+                    b1: 0.0,
+                    b2: 0.0,
+                    shape,
+                    primitive: 0,
+                    instance: NO_INSTANCE,
+                }))
             }
             Other::Disk { shape, index } => {
-                let (t, at) = self.disks[index as usize].intersect(ray)?;
-                Some(Hit { t, b1: at.x, b2: at.y, shape, primitive: 0, instance: NO_INSTANCE })
+                Met::Hit(self.disks[index as usize].intersect(ray).map(|(t, at)| Hit {
+                    t,
+                    b1: at.x,
+                    b2: at.y,
+                    shape,
+                    primitive: 0,
+                    instance: NO_INSTANCE,
+                }))
             }
             Other::Instance(instance) => {
                 let placed = &self.instances[instance as usize];
-                let tree = &self.groups[placed.group as usize];
-                let hit = self.bvh.intersect(tree, &placed.ray_in_group(ray), |other, ray| {
-                    self.intersect_other(other, ray)
-                });
-                hit.map(|hit| Hit { instance, ..hit })
+                let tree = self.groups[placed.group as usize];
+                Met::Placed { tree, ray: placed.ray_in_group(ray), instance }
             }
         }
     }

@@ -10,7 +10,7 @@ use super::packet;
 use super::simd::{Avx2, Avx512};
 use super::simd::{Kernel, Walk};
 use super::stream::walk_many;
-use super::{Bvh, Form, Pieces, Tree};
+use super::{Bvh, Form, Met, Pieces, Tree};
 use crate::{BATCH, Hit, Hits, Ray, Rays};
 
 impl Bvh {
@@ -19,7 +19,7 @@ impl Bvh {
         &self,
         tree: &Tree,
         (rays, count): (&Rays, usize),
-        meet_other: impl Fn(u32, &Ray) -> Option<Hit>,
+        meet_other: impl Fn(u32, &Ray) -> Met,
         hits: &mut Hits,
     ) {
         self.kernel.run(Closest { batch: Batch { bvh: self, tree, rays, count, meet_other }, hits });
@@ -30,7 +30,7 @@ impl Bvh {
         &self,
         tree: &Tree,
         (rays, count): (&Rays, usize),
-        meet_other: impl Fn(u32, &Ray) -> Option<Hit>,
+        meet_other: impl Fn(u32, &Ray) -> Met,
         occluded: &mut [bool; BATCH],
     ) {
         self.kernel.run(Any { batch: Batch { bvh: self, tree, rays, count, meet_other }, occluded });
@@ -79,7 +79,7 @@ struct Batch<'a, F> {
     meet_other: F,
 }
 
-impl<F: Fn(u32, &Ray) -> Option<Hit>> Batch<'_, F> {
+impl<F: Fn(u32, &Ray) -> Met> Batch<'_, F> {
     /// What packets meet, if they can.
     #[inline(always)]
     fn pieces(&self) -> Option<&Pieces> {
@@ -134,7 +134,7 @@ struct Closest<'a, F> {
     hits: &'a mut Hits,
 }
 
-impl<F: Fn(u32, &Ray) -> Option<Hit>> Work for Closest<'_, F> {
+impl<F: Fn(u32, &Ray) -> Met> Work for Closest<'_, F> {
     #[inline(always)]
     fn run<S: Walk>(self, simd: S) {
         let Self { batch, hits } = self;
@@ -155,7 +155,7 @@ struct Any<'a, F> {
     occluded: &'a mut [bool; BATCH],
 }
 
-impl<F: Fn(u32, &Ray) -> Option<Hit>> Work for Any<'_, F> {
+impl<F: Fn(u32, &Ray) -> Met> Work for Any<'_, F> {
     #[inline(always)]
     fn run<S: Walk>(self, simd: S) {
         let Self { batch, occluded } = self;

@@ -7,25 +7,20 @@ use super::scan::scan;
 use super::simd::{Avx2, Avx512};
 use super::simd::{Kernel, Walk};
 use super::traverse::walk;
-use super::{Bvh, Form, Tree, WIDE};
+use super::{Bvh, Form, Met, Tree};
 use crate::{Hit, Ray};
 
 impl Bvh {
     /// The closest hit. `meet_other(i, ray)` answers for the primitives that are not triangles.
     #[inline]
-    pub fn intersect(
-        &self,
-        tree: &Tree,
-        ray: &Ray,
-        meet_other: impl Fn(u32, &Ray) -> Option<Hit>,
-    ) -> Option<Hit> {
+    pub fn intersect(&self, tree: &Tree, ray: &Ray, meet_other: impl Fn(u32, &Ray) -> Met) -> Option<Hit> {
         let mut closest = Hit::none_before(ray.t_max);
         self.meet::<false>(tree, ray, meet_other, &mut closest).then_some(closest)
     }
 
     /// Is there any hit?
     #[inline]
-    pub fn occluded(&self, tree: &Tree, ray: &Ray, meet_other: impl Fn(u32, &Ray) -> Option<Hit>) -> bool {
+    pub fn occluded(&self, tree: &Tree, ray: &Ray, meet_other: impl Fn(u32, &Ray) -> Met) -> bool {
         let mut unused = Hit::none_before(ray.t_max);
         self.meet::<true>(tree, ray, meet_other, &mut unused)
     }
@@ -35,7 +30,7 @@ impl Bvh {
         &self,
         tree: &Tree,
         ray: &Ray,
-        meet_other: impl Fn(u32, &Ray) -> Option<Hit>,
+        meet_other: impl Fn(u32, &Ray) -> Met,
         closest: &mut Hit,
     ) -> bool {
         let ([x, y, z], [u, v, w]) = (ray.origin.to_array(), ray.direction.to_array());
@@ -62,15 +57,12 @@ pub(super) fn meet<S: Walk, const ANY: bool>(
     simd: S,
     (bvh, tree): (&Bvh, &Tree),
     ray: &Ray,
-    meet_other: impl Fn(u32, &Ray) -> Option<Hit>,
+    meet_other: impl Fn(u32, &Ray) -> Met,
     closest: &mut Hit,
 ) -> bool {
     match tree.form {
         Form::Nodes(root) => walk::<_, ANY>(simd, bvh, (root, &tree.bounds), ray, meet_other, closest),
-        Form::Few { first, count, extent, .. } => {
-            let blocks = &bvh.few[first as usize..][..(count as usize).div_ceil(WIDE)];
-            scan::<_, ANY>(simd, (blocks, count as usize, extent), ray, closest)
-        }
+        Form::Few(few) => scan::<_, ANY>(simd, bvh.few(few), ray, closest),
     }
 }
 
@@ -90,7 +82,7 @@ fn meet_avx512<const ANY: bool>(
     v: f32,
     w: f32,
     t_max: f32,
-    meet_other: impl Fn(u32, &Ray) -> Option<Hit>,
+    meet_other: impl Fn(u32, &Ray) -> Met,
     closest: &mut Hit,
 ) -> bool {
     let ray = Ray { origin: Vec3::new(x, y, z), direction: Vec3::new(u, v, w), t_max };
@@ -110,7 +102,7 @@ fn meet_avx2<const ANY: bool>(
     v: f32,
     w: f32,
     t_max: f32,
-    meet_other: impl Fn(u32, &Ray) -> Option<Hit>,
+    meet_other: impl Fn(u32, &Ray) -> Met,
     closest: &mut Hit,
 ) -> bool {
     let ray = Ray { origin: Vec3::new(x, y, z), direction: Vec3::new(u, v, w), t_max };

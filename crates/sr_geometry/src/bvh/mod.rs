@@ -34,7 +34,7 @@ mod walker;
 use glam::Vec3;
 use rayon::prelude::*;
 
-use crate::{Bounds3, Disk, Hit, NO_INSTANCE, ShapeId, Sphere};
+use crate::{Bounds3, Disk, Hit, NO_INSTANCE, Ray, ShapeId, Sphere};
 use simd::Kernel;
 
 use build::MAX_DEPTH;
@@ -72,6 +72,21 @@ const PREFETCH_FROM: usize = 1 << 20;
 pub(crate) enum Round<'a> {
     Sphere(ShapeId, &'a Sphere),
     Disk(ShapeId, &'a Disk),
+}
+
+/// What a ray meets at a primitive that is not a triangle.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Met {
+    /// A hit before the ray's end, if there is any.
+    Hit(Option<Hit>),
+    /// A tree in another space, of triangles and what leads to a `Hit`.
+    Placed {
+        tree: Tree,
+        /// The same ray there, with the same t.
+        ray: Ray,
+        /// The instance of hits.
+        instance: u32,
+    },
 }
 
 /// Up to [`WIDE`] triangles, transposed. Missing ones have NaN vertices, which no ray hits.
@@ -127,14 +142,25 @@ pub(crate) struct Tree {
 enum Form {
     /// Below a node.
     Nodes(NodeRef),
-    /// As `count` triangles in wide blocks from `first` on, without nodes; `extent` is the longest side of their box.
-    Few { first: u32, count: u32, extent: f32 },
+    /// Without nodes.
+    Few(Few),
+}
+
+/// As `count` triangles in wide blocks from `first` on; `extent` is the longest side of their box.
+#[derive(Clone, Copy, Debug)]
+struct Few {
+    first: u32,
+    count: u32,
+    extent: f32,
 }
 
 impl Tree {
     /// The tree without primitives.
-    pub const EMPTY: Self =
-        Self { form: Form::Few { first: 0, count: 0, extent: 0.0 }, pieces: None, bounds: Bounds3::EMPTY };
+    pub const EMPTY: Self = Self {
+        form: Form::Few(Few { first: 0, count: 0, extent: 0.0 }),
+        pieces: None,
+        bounds: Bounds3::EMPTY,
+    };
 }
 
 /// The arrays that all trees share.
@@ -171,7 +197,7 @@ impl Bvh {
         let bounds = prims.par_iter().map(PrimRef::lanes).reduce(|| Lanes::EMPTY, Lanes::union).bounds();
         if prims.len() <= FEW && prims.iter().all(PrimRef::is_triangle) {
             let (first, count) = (self.few.len() as u32, prims.len() as u32);
-            let form = Form::Few { first, count, extent: bounds.extent().max_element() };
+            let form = Form::Few(Few { first, count, extent: bounds.extent().max_element() });
             self.few.extend(prims.chunks(WIDE).map(|prims| TriangleBlock::new(prims, &vertices_of)));
             return Tree { form, pieces: None, bounds };
         }
@@ -202,6 +228,13 @@ impl Bvh {
             tree.pieces = Some(self.pieces.len() as u32);
             self.pieces.push(pieces);
         }
+    }
+
+    /// The blocks of few triangles, the number of these, and the longest side of their box.
+    #[inline(always)]
+    fn few(&self, Few { first, count, extent }: Few) -> (&[TriangleBlock], usize, f32) {
+        let count = count as usize;
+        (&self.few[first as usize..][..count.div_ceil(WIDE)], count, extent)
     }
 
     /// Bytes of nodes and triangles.

@@ -19,7 +19,7 @@ pub(crate) struct NodeRef(u32);
 pub(crate) mod kind {
     /// A node.
     pub const NODE: usize = 0;
-    /// An other primitive, or [`super::NodeRef::DONE`].
+    /// An other primitive, [`super::NodeRef::DONE`] or [`super::NodeRef::BACK`].
     pub const OTHER: usize = 1;
     /// A leaf of up to [`super::super::NARROW`] triangles.
     pub const NARROW: usize = 2;
@@ -34,6 +34,8 @@ impl NodeRef {
     pub const NONE: Self = Self(Self::LEAF);
     /// What lies below all children that wait for a ray: there are no more.
     pub const DONE: Self = Self(Self::LEAF - 1);
+    /// What lies below the children in a placed tree: the ray goes back to the space that it came from.
+    pub const BACK: Self = Self(Self::LEAF - 2);
     const LEAF: u32 = 1 << 31;
     const OTHER: u32 = 1 << 30;
     const FIRST: u32 = MAX_INDEX as u32;

@@ -5,8 +5,9 @@ use std::mem::MaybeUninit;
 use super::simd::Walk;
 use super::{MAX_DEPTH, NodeRef, WIDTH};
 
-/// [`NodeRef::DONE`], what every node on the way to a leaf leaves, and what is written at a time.
-const CAPACITY: usize = 1 + (WIDTH - 1) * MAX_DEPTH + 2 * WIDTH;
+/// [`NodeRef::DONE`] and [`NodeRef::BACK`], what every node on the way to a leaf leaves, in a tree and in one that is
+/// placed in it, and what is written at a time.
+const CAPACITY: usize = 2 + 2 * (WIDTH - 1) * MAX_DEPTH + 2 * WIDTH;
 
 /// Children that wait for their turn, the next one last, and where the ray enters them. The first is [`NodeRef::DONE`].
 ///
@@ -26,6 +27,15 @@ impl Stack {
         self.children[1].write(child);
         self.enters[1].write(0.0);
         self.depth = 2;
+    }
+
+    /// Adds a child that is always within reach.
+    #[inline(always)]
+    pub fn push(&mut self, child: NodeRef) {
+        debug_assert!(self.depth + WIDTH <= CAPACITY);
+        self.children[self.depth].write(child);
+        self.enters[self.depth].write(0.0);
+        self.depth += 1;
     }
 
     /// Takes the last child. Never to be called after it was [`NodeRef::DONE`].

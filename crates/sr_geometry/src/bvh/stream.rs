@@ -14,7 +14,7 @@ use super::sheared::Sheared;
 use super::simd::Walk;
 use super::slabs::Line;
 use super::walker::Walker;
-use super::{Bvh, NodeRef};
+use super::{Bvh, Met, NodeRef};
 use crate::{Bounds3, Hit, Ray, Rays};
 
 /// Walks at a time: fewer wait, more do not fit the first-level cache.
@@ -28,7 +28,7 @@ pub(super) fn walk_many<S: Walk, const ANY: bool>(
     bvh: &Bvh,
     (root, bounds): (NodeRef, &Bounds3),
     (rays, count): (&Rays, usize),
-    meet_other: &impl Fn(u32, &Ray) -> Option<Hit>,
+    meet_other: &impl Fn(u32, &Ray) -> Met,
     mut answer: impl FnMut(usize, Option<&Hit>),
 ) {
     let mut prepared = Prepared::NONE;
@@ -82,15 +82,20 @@ pub(super) fn walk_many<S: Walk, const ANY: bool>(
         for i in lists.take(kind::OTHER) {
             let Entry { walker, child } = lists.entries[kind::OTHER][i % RING];
             let at = places.at(walker);
+            let ray = ray_of[walker as usize % AT_A_TIME];
             if child == NodeRef::DONE {
-                answer(ray_of[walker as usize % AT_A_TIME], at.hit(bvh).as_ref());
+                answer(ray, at.hit(bvh).as_ref());
                 free[idle % AT_A_TIME] = walker;
                 idle += 1;
-            } else {
-                at.visit_other(simd, child.index() as u32, meet_other);
-                at.forget_beyond(simd);
-                lists.put(walker, at.next_of_many(simd, bvh));
+                continue;
             }
+            if child == NodeRef::BACK {
+                at.go_back(simd, &rays.get(ray), bounds);
+            } else {
+                at.visit_other(simd, bvh, child.index() as u32, meet_other);
+                at.forget_beyond(simd);
+            }
+            lists.put(walker, at.next_of_many(simd, bvh));
         }
     }
 }

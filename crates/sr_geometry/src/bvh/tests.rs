@@ -4,7 +4,7 @@ use glam::{Mat3, Vec2, Vec3};
 
 use super::sheared::Triangles;
 use super::simd::{Kernel, Portable};
-use super::{Bvh, FEW, FEW_ROUNDS, Form, MAX_DEPTH, NodeRef, PrimRef, Round, Tree, WIDE};
+use super::{Bvh, FEW, FEW_ROUNDS, Few, Form, MAX_DEPTH, Met, NodeRef, PrimRef, Round, Tree, WIDE};
 use crate::{BATCH, Bounds3, Disk, Hit, Hits, NO_INSTANCE, Ray, Rays, ShapeId, Sphere};
 
 /// A triangle at `at` with edges of about `size`.
@@ -71,7 +71,7 @@ fn check_tree(triangles: &[[Vec3; 3]]) -> usize {
     let mut found = Vec::new();
     let depth = match tree.form {
         Form::Nodes(root) => visit(&bvh, root, &tree.bounds, &mut found),
-        Form::Few { first, count, .. } => {
+        Form::Few(Few { first, count, .. }) => {
             let triangle = |i: usize| bvh.few[first as usize + i / WIDE].primitive[i % WIDE];
             found.extend((0..count as usize).map(triangle));
             0
@@ -112,7 +112,7 @@ fn meet_batches(
     count: usize,
 ) -> Vec<(Option<Hit>, bool)> {
     let mut met = Vec::new();
-    let meet_other = |i: u32, ray: &Ray| meet_round(rounds[i as usize], ray);
+    let meet_other = |i: u32, ray: &Ray| Met::Hit(meet_round(rounds[i as usize], ray));
     for rays in rays.chunks(count) {
         let (mut batch, mut hits, mut occluded) = (Rays::NONE, Hits::NONE, [false; BATCH]);
         for (i, ray) in rays.iter().enumerate() {
@@ -128,7 +128,7 @@ fn meet_batches(
 /// Holds all kernels against one another.
 fn check_kernels(triangles: &[[Vec3; 3]], rounds: &[Round<'_>], rays: &[Ray]) -> usize {
     let (mut bvh, tree) = build(triangles, rounds);
-    let other = |i: u32, ray: &Ray| meet_round(rounds[i as usize], ray);
+    let other = |i: u32, ray: &Ray| Met::Hit(meet_round(rounds[i as usize], ray));
     let hits = |bvh: &Bvh| -> Vec<_> {
         rays.iter().map(|ray| (bvh.intersect(&tree, ray, other), bvh.occluded(&tree, ray, other))).collect()
     };

@@ -10,7 +10,7 @@ use super::sheared::Sheared;
 use super::simd::Walk;
 use super::slabs::Line;
 use super::walker::Walker;
-use super::{Bvh, Node, NodeRef};
+use super::{Bvh, Met, Node, NodeRef};
 use crate::{Bounds3, Hit, Ray};
 
 /// Would the ray meet every box, and no triangle?
@@ -28,7 +28,7 @@ pub(super) fn walk<S: Walk, const ANY: bool>(
     bvh: &Bvh,
     (root, bounds): (NodeRef, &Bounds3),
     ray: &Ray,
-    meet_other: impl Fn(u32, &Ray) -> Option<Hit>,
+    meet_other: impl Fn(u32, &Ray) -> Met,
     closest: &mut Hit,
 ) -> bool {
     if meets_nothing(ray) {
@@ -51,7 +51,8 @@ pub(super) fn walk<S: Walk, const ANY: bool>(
             kind::NARROW => walker.visit_leaf::<true, true>(simd, &bvh.leaves.leaf(child)),
             kind::FULL => walker.visit_leaf::<false, true>(simd, &bvh.leaves.leaf(child)),
             _ if child == NodeRef::DONE => break,
-            _ => walker.visit_other(simd, child.index() as u32, &meet_other),
+            _ if child == NodeRef::BACK => walker.go_back(simd, ray, bounds),
+            _ => walker.visit_other(simd, bvh, child.index() as u32, &meet_other),
         }
     }
     let hit = walker.hit(bvh);

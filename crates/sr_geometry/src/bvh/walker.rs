@@ -4,21 +4,26 @@ use std::hint::select_unpredictable;
 use std::mem::MaybeUninit;
 
 use super::leaves::Leaf;
+use super::scan::scan;
 use super::sheared::{Meets, Sheared};
 use super::simd::{Eight, Lanes, Walk};
 use super::slabs::Line;
 use super::stack::Stack;
-use super::{Bvh, Node, NodeRef};
-use crate::{Hit, NO_INSTANCE, Ray};
+use super::traverse::meets_nothing;
+use super::{Bvh, Form, Met, Node, NodeRef};
+use crate::{Bounds3, Hit, NO_INSTANCE, Ray};
 
 /// Of what is no triangle.
 const NOWHERE: u32 = u32::MAX;
 
 /// A ray under way. `ANY`: any hit will do, and is not told.
 pub(super) struct Walker<S: Walk, const ANY: bool> {
+    /// The ray in the space where it is, ready to meet what is there.
     ray: Ray,
     sheared: Sheared,
     slabs: S::Slabs,
+    /// The instance by which it came there.
+    instance: u32,
     pub stack: Stack,
     met: bool,
     /// The closest hit so far, or the end of the ray.
@@ -27,6 +32,8 @@ pub(super) struct Walker<S: Walk, const ANY: bool> {
     b2: f32,
     /// Where the triangle that was hit is in the leaves, or [`NOWHERE`].
     place: u32,
+    /// The instance that this triangle is in.
+    instance_of_place: u32,
     /// What was hit if no triangle was.
     other: Hit,
 }
@@ -46,11 +53,13 @@ impl<S: Walk, const ANY: bool> Walker<S, ANY> {
             (&raw mut (*walker).ray).write(*ray);
             (&raw mut (*walker).sheared).write(*sheared);
             (&raw mut (*walker).slabs).write(simd.slabs(line));
+            (&raw mut (*walker).instance).write(NO_INSTANCE);
             (&raw mut (*walker).met).write(false);
             (&raw mut (*walker).t).write(ray.t_max);
             (&raw mut (*walker).b1).write(0.0);
             (&raw mut (*walker).b2).write(0.0);
             (&raw mut (*walker).place).write(NOWHERE);
+            (&raw mut (*walker).instance_of_place).write(NO_INSTANCE);
             (&raw mut (*walker).other).write(Hit::none_before(ray.t_max));
             (*walker).stack.reset(root);
             &mut *walker
@@ -132,19 +141,49 @@ impl<S: Walk, const ANY: bool> Walker<S, ANY> {
         self.b1 = select_unpredictable(any, b1, self.b1);
         self.b2 = select_unpredictable(any, b2, self.b2);
         self.place = select_unpredictable(any, (leaf.first + lane) as u32, self.place);
+        self.instance_of_place = select_unpredictable(any, self.instance, self.instance_of_place);
+    }
+
+    /// Visits a primitive that is not a triangle: meets it, or enters the tree that it places, of which it pushes the
+    /// root.
+    #[inline(always)]
+    pub fn visit_other(&mut self, simd: S, bvh: &Bvh, other: u32, meet_other: impl Fn(u32, &Ray) -> Met) {
+        let (hit, instance) = match meet_other(other, &Ray { t_max: self.t, ..self.ray }) {
+            Met::Hit(hit) => (hit, self.instance),
+            Met::Placed { ray, .. } if meets_nothing(&ray) => return,
+            Met::Placed { tree, ray, instance } => match tree.form {
+                Form::Nodes(root) => {
+                    self.stack.push(NodeRef::BACK);
+                    self.stack.push(root);
+                    return self.move_to(simd, &ray, &tree.bounds, instance);
+                }
+                Form::Few(few) => {
+                    let mut hit = Hit::none_before(self.t);
+                    let met = scan::<_, ANY>(simd, bvh.few(few), &ray, &mut hit);
+                    (met.then_some(hit), instance)
+                }
+            },
+        };
+        let Some(hit) = hit else { return };
+        (self.met, self.t, self.place, self.other) = (true, hit.t, NOWHERE, Hit { instance, ..hit });
+        if ANY {
+            self.stack.clear_if(true);
+        } else {
+            simd.shorten(&mut self.slabs, hit.t);
+        }
+    }
+
+    /// Goes back to where the ray, which is given again, came from: a tree within `bounds`.
+    #[inline(always)]
+    pub fn go_back(&mut self, simd: S, ray: &Ray, bounds: &Bounds3) {
+        self.move_to(simd, &Ray { t_max: self.t, ..*ray }, bounds, NO_INSTANCE);
     }
 
     #[inline(always)]
-    pub fn visit_other(&mut self, simd: S, other: u32, meet_other: impl Fn(u32, &Ray) -> Option<Hit>) {
-        let Some(hit) = meet_other(other, &Ray { t_max: self.t, ..self.ray }) else {
-            return;
-        };
-        (self.met, self.t, self.place, self.other) = (true, hit.t, NOWHERE, hit);
-        if ANY {
-            self.stack.clear_if(true);
-            return;
-        }
-        simd.shorten(&mut self.slabs, hit.t);
+    fn move_to(&mut self, simd: S, ray: &Ray, bounds: &Bounds3, instance: u32) {
+        self.sheared = Sheared::new(ray.origin, ray.direction);
+        self.slabs = simd.slabs(&Line::new(ray.origin, ray.direction, ray.t_max, bounds));
+        (self.ray, self.instance) = (*ray, instance);
     }
 
     /// What was hit.
@@ -157,6 +196,6 @@ impl<S: Walk, const ANY: bool> Walker<S, ANY> {
             return Some(self.other);
         }
         let (shape, primitive) = bvh.leaves.name(self.place);
-        Some(Hit { t: self.t, b1: self.b1, b2: self.b2, shape, primitive, instance: NO_INSTANCE })
+        Some(Hit { t: self.t, b1: self.b1, b2: self.b2, shape, primitive, instance: self.instance_of_place })
     }
 }
