@@ -17,7 +17,7 @@ pub(super) const MAX_DEPTH: usize = 36;
 const PARALLEL: usize = 1 << 12;
 
 /// What fits a leaf is cut further only if the areas of its parts sum to less than this of its own.
-const WORTH_CUTTING: f32 = 0.9;
+const WORTH_CUTTING: f32 = 1.2;
 
 /// A tree whose leaves are still ranges of the primitives.
 pub(super) struct BuiltTree {
