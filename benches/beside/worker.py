@@ -52,7 +52,7 @@ def main() -> None:
 def peak_mib() -> float:
     """The most memory that this process, or one that it started, had at a time."""
     children = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
-    # What ``getrusage`` says of this process starts with what its parent had: Linux keeps it in a better place.
+    # What ``getrusage`` says of this process starts with what its parent had.
     status = Path("/proc/self/status")
     if status.exists():
         own = re.search(r"VmHWM:\s*(\d+) kB", status.read_text())
