@@ -17,7 +17,8 @@ pub struct PiecewiseConstant2D {
     rows: Vec<u32>,
     /// Of the columns, given the row: `width + 1` numbers for each.
     columns: Vec<u32>,
-    /// Where to look for a uniform in `rows`, and in each row of `columns`.
+    /// Where to look for a uniform in `rows`, and in each row of `columns`: 2ᵇ cuts of [0, 1).
+    guide_bits: [u32; 2],
     row_guide: Vec<u16>,
     column_guides: Vec<u16>,
 }
@@ -59,16 +60,17 @@ impl PiecewiseConstant2D {
         {
             cumulative::fill(row.iter().map(|&v| f64::from(v)), row_sum, out);
         }
-        let guide_len = |len| (1 << cumulative::guide_bits(len)) + 1;
-        let mut row_guide = vec![0; guide_len(sums.len())];
+        let guide_bits = [sums.len(), width].map(cumulative::guide_bits);
+        let [row_guide_len, column_guide_len] = guide_bits.map(|bits| 1 << bits);
+        let mut row_guide = vec![0; row_guide_len];
         cumulative::fill_guide(&rows, &mut row_guide);
-        let mut column_guides = vec![0; sums.len() * guide_len(width)];
+        let mut column_guides = vec![0; sums.len() * column_guide_len];
         for (row, guide) in
-            columns.chunks_exact(width + 1).zip(column_guides.chunks_exact_mut(guide_len(width)))
+            columns.chunks_exact(width + 1).zip(column_guides.chunks_exact_mut(column_guide_len))
         {
             cumulative::fill_guide(row, guide);
         }
-        Ok(Self { width, rows, columns, row_guide, column_guides })
+        Ok(Self { width, rows, columns, guide_bits, row_guide, column_guides })
     }
 
     /// The number of columns.
@@ -83,11 +85,6 @@ impl PiecewiseConstant2D {
 
     fn row(&self, y: usize) -> &[u32] {
         &self.columns[y * (self.width + 1)..(y + 1) * (self.width + 1)]
-    }
-
-    fn column_guide(&self, y: usize) -> &[u16] {
-        let len = self.column_guides.len() / self.height();
-        &self.column_guides[y * len..(y + 1) * len]
     }
 
     /// Cells per unit of area.
@@ -107,7 +104,7 @@ impl PiecewiseConstant2D {
 }
 
 /// A coordinate in cell `cell` of `n`: rounding must not push it into the next one.
-#[inline]
+#[inline(always)]
 fn place(cell: usize, rest: f64, n: usize) -> f32 {
     let x = ((cell as f64 + rest) / n as f64) as f32;
     if f64::from(x) * n as f64 >= (cell + 1) as f64 { x.next_down() } else { x }
@@ -117,10 +114,13 @@ impl Distribution for PiecewiseConstant2D {
     type Measure = Plane;
     type Uniform = Vec2;
 
-    #[inline]
+    #[inline(always)]
     fn sample(&self, u: Vec2) -> Option<Sample<Plane>> {
-        let y = cumulative::pick_guided(&self.rows, &self.row_guide, u.y);
-        let x = cumulative::pick_guided(self.row(y.index), self.column_guide(y.index), u.x);
+        let [row_bits, bits] = self.guide_bits;
+        let y = cumulative::pick_guided(&self.rows, &self.row_guide, row_bits, u.y);
+        let (columns, guide) =
+            (&self.columns[y.index * (self.width + 1)..], &self.column_guides[y.index << bits..]);
+        let x = cumulative::pick_guided(columns, guide, bits, u.x);
         let value = Vec2::new(place(x.index, x.rest, self.width), place(y.index, y.rest, self.height()));
         Some(Sample { value, pdf: (x.pmf * y.pmf * self.cells()) as f32 })
     }

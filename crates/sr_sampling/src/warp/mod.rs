@@ -14,7 +14,7 @@ mod spherical_triangle;
 mod triangle;
 
 pub use cone::{ConeError, UniformCone};
-pub use disk::{UniformDisk, concentric_disk, invert_concentric_disk};
+pub use disk::{UniformDisk, concentric_disk, invert_concentric_disk, unit_circle};
 pub use hemisphere::{AnyHemisphere, CosineHemisphere, UniformHemisphere};
 pub use rectangle::{DegenerateRectangle, UniformRectangle};
 pub use sphere::UniformSphere;
