@@ -3,8 +3,8 @@
 use glam::{Vec2, Vec3};
 
 use crate::{
-    Bsdf, BsdfSample, Conductor, Dielectric, Diffuse, Lobes, Mask, Plastic, Rgb, RoughConductor,
-    RoughDielectric, RoughPlastic, ThinDielectric,
+    Bsdf, BsdfSample, Conductor, Dielectric, Diffuse, Lobes, Mask, MicrofacetShape, Plastic, Rgb,
+    RoughConductor, RoughDielectric, RoughPlastic, ThinDielectric,
 };
 
 /// Any model that fills its surface.
@@ -172,10 +172,10 @@ impl From<ThinDielectric> for AnyModel<'_> {
     }
 }
 
-impl From<RoughDielectric> for AnyModel<'_> {
+impl<S: MicrofacetShape> From<RoughDielectric<S>> for AnyModel<'_> {
     #[inline]
-    fn from(model: RoughDielectric) -> Self {
-        AnyModel::RoughDielectric(model)
+    fn from(model: RoughDielectric<S>) -> Self {
+        AnyModel::RoughDielectric(model.of_any_shape())
     }
 }
 
@@ -186,10 +186,10 @@ impl From<Conductor> for AnyModel<'_> {
     }
 }
 
-impl From<RoughConductor> for AnyModel<'_> {
+impl<S: MicrofacetShape> From<RoughConductor<S>> for AnyModel<'_> {
     #[inline]
-    fn from(model: RoughConductor) -> Self {
-        AnyModel::RoughConductor(model)
+    fn from(model: RoughConductor<S>) -> Self {
+        AnyModel::RoughConductor(model.of_any_shape())
     }
 }
 
@@ -200,9 +200,9 @@ impl From<Plastic> for AnyModel<'_> {
     }
 }
 
-impl<'a> From<RoughPlastic<'a>> for AnyModel<'a> {
+impl<'a, S: MicrofacetShape> From<RoughPlastic<'a, S>> for AnyModel<'a> {
     #[inline]
-    fn from(model: RoughPlastic<'a>) -> Self {
-        AnyModel::RoughPlastic(model)
+    fn from(model: RoughPlastic<'a, S>) -> Self {
+        AnyModel::RoughPlastic(model.of_any_shape())
     }
 }

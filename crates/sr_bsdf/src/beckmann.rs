@@ -4,79 +4,101 @@ use std::f32::consts::FRAC_2_SQRT_PI;
 
 use glam::{Vec2, Vec3};
 
+use crate::elementary::{exp, horner, ln};
 use crate::erf::{erf_exp, erf_inv, erfcx_positive};
+use crate::{MicrofacetKind, MicrofacetShape};
 
 const FRAC_1_SQRT_PI: f32 = 0.5 * FRAC_2_SQRT_PI;
 
-/// π αₓ α_y D, from the squared length of (mₓ/αₓ, m_y/α_y) and m_z.
-#[inline]
-pub(crate) fn d(slope_squared: f32, cos: f32) -> f32 {
-    let cos_squared = cos * cos;
-    let exponent = slope_squared / cos_squared;
-    // Beyond, the exponential has lost to any cos⁻⁴ that `f32` and the largest roughness allow.
-    if exponent < 80.0 { (-exponent).exp() / (cos_squared * cos_squared) } else { 0.0 }
-}
+/// [`MicrofacetKind::Beckmann`], known to compilers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Beckmann;
 
-/// |cos θ| (1 + Λ), from |cos θ| and the length of (αₓ wₓ, α_y w_y).
-///
-/// Λ = exp(−a²) / (2 a √π) − erfc(a) / 2 with a = |cos θ| / spread, multiplied out so that a = 0 is harmless.
-#[inline]
-pub(crate) fn projected_area(cos: f32, spread: f32) -> f32 {
-    // Λ < 10⁻⁹. Also where `spread` is 0.
-    if cos >= 4.0 * spread {
-        return cos;
+impl MicrofacetShape for Beckmann {
+    #[inline]
+    fn kind(self) -> MicrofacetKind {
+        MicrofacetKind::Beckmann
     }
-    let a = cos / spread;
-    cos + 0.5 * (-a * a).exp() * (spread * FRAC_1_SQRT_PI - cos * erfcx_positive(a))
-}
 
-/// Draws a normal (not of unit length) of those that the unit vector `w` sees, w.z > 0.
-///
-/// Heitz & d'Eon 2014: with x the slope along `w`'s azimuth, x and y are independent; y is Gaussian, and
-/// x has the density (cos θ − x sin θ) exp(−x²), x < cot θ. Its integral is inverted in the variable
-/// erf(x) (Jakob 2014) by Newton's method, with bisection wherever that would leave the bracket.
-pub(crate) fn sample_visible(w: Vec3, u: Vec2) -> Vec3 {
-    let (cos, sin) = (w.z, Vec2::new(w.x, w.y).length());
-    let along = visible_slope(cos, sin, u.x);
-    let across = erf_inv((2.0 * u.y - 1.0).clamp(-MAX_ERF, MAX_ERF));
-    let azimuth = if sin > 0.0 { Vec2::new(w.x, w.y) / sin } else { Vec2::X };
-    (-(along * azimuth + across * azimuth.perp())).extend(1.0)
+    #[inline(always)]
+    fn d(self, slope_squared: f32, cos: f32) -> f32 {
+        let cos_squared = cos * cos;
+        let exponent = slope_squared / cos_squared;
+        // Beyond, the exponential has lost to any cos⁻⁴ that `f32` and the largest roughness allow.
+        if exponent < 80.0 { exp(-exponent) / (cos_squared * cos_squared) } else { 0.0 }
+    }
+
+    /// Λ = exp(−a²) / (2 a √π) − erfc(a) / 2 with a = |cos θ| / spread, multiplied out so that a = 0 is harmless.
+    #[inline(always)]
+    fn projected_area(self, cos: f32, spread: f32) -> f32 {
+        // Λ < 10⁻⁹. Also where `spread` is 0.
+        if cos >= 4.0 * spread {
+            return cos;
+        }
+        let a = cos / spread;
+        cos + 0.5 * exp(-a * a) * (spread * FRAC_1_SQRT_PI - cos * erfcx_positive(a))
+    }
+
+    /// Heitz & d'Eon 2014: with x the slope along `w`'s azimuth, x and y are independent; y is Gaussian, and
+    /// x has the density (cos θ − x sin θ) exp(−x²), x < cot θ. Its integral is inverted in the variable
+    /// erf(x) by Newton's method (Jakob 2014, "An Improved Visible Normal Sampling Routine for the Beckmann
+    /// Distribution").
+    #[inline(always)]
+    fn sample_visible(self, w: Vec3, u: Vec2) -> Vec3 {
+        let (cos, sin) = (w.z, Vec2::new(w.x, w.y).length());
+        let along = visible_slope(cos, sin, u.x);
+        let across = erf_inv((2.0 * u.y - 1.0).clamp(-MAX_ERF, MAX_ERF));
+        let azimuth = if sin > 0.0 { Vec2::new(w.x, w.y) / sin } else { Vec2::X };
+        (-(along * azimuth + across * azimuth.perp())).extend(1.0)
+    }
 }
 
 /// The largest `f32` below 1: slopes beyond ± 3.8 have a probability below 10⁻⁷.
 const MAX_ERF: f32 = 1.0 - f32::EPSILON / 2.0;
 
 /// The slope x along the azimuth of a direction with this elevation, from a uniform number.
+///
+/// The distribution function is concave in e = erf(x), and Jakob's fit of its inverse is near, off by up to 0.05. Steps
+/// of Newton's method bring that to 2 · 10⁻³, 3 · 10⁻⁶, and the limits of `f32`. Nothing here branches.
+#[inline(always)]
 fn visible_slope(cos: f32, sin: f32, u: f32) -> f32 {
-    // ∫ over slopes below x, times 2 / √π: cos (1 + e) + sin exp(−x²) / √π, with e = erf(x).
     let (max_e, max_exp) = erf_exp(cos / sin);
-    let total = cos * (1.0 + max_e) + sin * FRAC_1_SQRT_PI * max_exp;
-    let target = u * total;
-    let (mut low, mut high) = (-MAX_ERF, max_e.min(MAX_ERF));
-    // At normal incidence e is uniform.
-    let mut e = low + u * (high - low);
-    let mut x = erf_inv(e);
-    for _ in 0..MAX_ITERATIONS {
-        let excess = cos * (1.0 + e) + sin * FRAC_1_SQRT_PI * (-x * x).exp() - target;
-        if excess.abs() < TOLERANCE * total {
-            break;
-        }
-        if excess > 0.0 {
-            high = e
-        } else {
-            low = e
-        }
-        let newton = e - excess / (cos - x * sin);
-        e = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
-        x = erf_inv(e);
-    }
-    x
+    let of_slopes = VisibleSlopes { cos, sin, max_e: max_e.min(MAX_ERF) };
+    let target = u * (cos * (1.0 + max_e) + sin * FRAC_1_SQRT_PI * max_exp);
+    let theta = rough_acos(cos);
+    let power = 1.0 + theta * (-0.876 + theta * (0.426_5 - 0.059_4 * theta));
+    let fit = max_e - (1.0 + max_e) * exp(power * ln(1.0 - u));
+    let e = of_slopes.newton(fit.max(-MAX_ERF).min(of_slopes.max_e), target);
+    let e = of_slopes.newton(of_slopes.newton(e, target), target);
+    erf_inv(e)
 }
 
-/// Accepted error of the inverted distribution function.
-const TOLERANCE: f32 = 2e-7;
-/// Newton needs about five; bisection alone would end at `f32`'s precision after this many.
-const MAX_ITERATIONS: usize = 24;
+/// The slopes along the azimuth of a direction, in the variable e = erf(x).
+struct VisibleSlopes {
+    cos: f32,
+    sin: f32,
+    max_e: f32,
+}
+
+impl VisibleSlopes {
+    /// A step from `e` towards where ∫ over slopes below x, times 2 / √π, cos (1 + e) + sin exp(−x²) / √π, is `target`.
+    #[inline(always)]
+    fn newton(&self, e: f32, target: f32) -> f32 {
+        let x = erf_inv(e);
+        let excess = self.cos * (1.0 + e) + self.sin * FRAC_1_SQRT_PI * exp(-x * x) - target;
+        let step = excess / (self.cos - x * self.sin).max(MIN_DENSITY);
+        (e - step).max(-MAX_ERF).min(self.max_e)
+    }
+}
+
+/// The density of e goes to 0 at the steepest slope that is seen; uniforms of 24 bits do not come nearer to it than this.
+const MIN_DENSITY: f32 = 1e-4;
+
+/// θ from cos θ in [0, 1], to 7 · 10⁻⁵ (Abramowitz & Stegun 1964, 4.4.45).
+#[inline(always)]
+fn rough_acos(cos: f32) -> f32 {
+    (1.0 - cos).max(0.0).sqrt() * horner(cos, [-0.018_729_3, 0.074_261, -0.212_114_4, 1.570_728_8])
+}
 
 #[cfg(test)]
 mod tests {
@@ -119,8 +141,8 @@ mod tests {
     #[test]
     fn projected_area_at_the_slope_of_the_surface() {
         let lambda = 0.5 * (0.842_700_8 - 1.0) + 0.367_879_44 * 0.5 * FRAC_1_SQRT_PI;
-        assert!((projected_area(0.5, 0.5) - 0.5 * (1.0 + lambda)).abs() < 1e-6);
-        assert_eq!(projected_area(1.0, 0.0), 1.0);
-        assert!((projected_area(0.0, 0.3) - 0.15 * FRAC_1_SQRT_PI).abs() < 1e-7);
+        assert!((Beckmann.projected_area(0.5, 0.5) - 0.5 * (1.0 + lambda)).abs() < 1e-6);
+        assert_eq!(Beckmann.projected_area(1.0, 0.0), 1.0);
+        assert!((Beckmann.projected_area(0.0, 0.3) - 0.15 * FRAC_1_SQRT_PI).abs() < 1e-7);
     }
 }

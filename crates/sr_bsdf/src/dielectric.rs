@@ -19,19 +19,19 @@ pub struct Dielectric {
 impl Dielectric {
     /// - `eta`: index inside (−Z) over that outside (+Z), positive
     /// - `reflectance`, `transmittance`: scale what Fresnel's equations give; physically 1
-    #[inline]
+    #[inline(always)]
     pub fn new(eta: f32, reflectance: Rgb, transmittance: Rgb) -> Self {
         Self { eta, reflectance, transmittance }
     }
 }
 
 impl Bsdf for Dielectric {
-    #[inline]
+    #[inline(always)]
     fn eval(&self, _wo: Vec3, _wi: Vec3) -> Rgb {
         Rgb::ZERO
     }
 
-    #[inline]
+    #[inline(always)]
     fn sample(&self, wo: Vec3, u_lobe: f32, _u: Vec2) -> Option<BsdfSample> {
         if wo.z == 0.0 {
             return None;
@@ -52,17 +52,17 @@ impl Bsdf for Dielectric {
         Some(BsdfSample { wi, weight, pdf: split.transmittance, delta: true, eta: split.eta })
     }
 
-    #[inline]
+    #[inline(always)]
     fn pdf(&self, _wo: Vec3, _wi: Vec3) -> f32 {
         0.0
     }
 
-    #[inline]
+    #[inline(always)]
     fn lobes(&self) -> Lobes {
         Lobes { reflection: false, transmission: false, delta: true }
     }
 
-    #[inline]
+    #[inline(always)]
     fn albedo(&self) -> Rgb {
         self.transmittance.lerp(self.reflectance, dielectric(1.0, self.eta).reflectance)
     }

@@ -17,19 +17,19 @@ pub struct Diffuse {
 
 impl Diffuse {
     /// From the fraction of light that it reflects, per channel in [0, 1].
-    #[inline]
+    #[inline(always)]
     pub fn new(albedo: Rgb) -> Self {
         Self { albedo }
     }
 }
 
 impl Bsdf for Diffuse {
-    #[inline]
+    #[inline(always)]
     fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
         if wo.z > 0.0 && wi.z > 0.0 { self.albedo * FRAC_1_PI } else { Rgb::ZERO }
     }
 
-    #[inline]
+    #[inline(always)]
     fn sample(&self, wo: Vec3, _u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
         if wo.z <= 0.0 {
             return None;
@@ -38,17 +38,17 @@ impl Bsdf for Diffuse {
         Some(BsdfSample { wi: s.value, weight: self.albedo, pdf: s.pdf, delta: false, eta: 1.0 })
     }
 
-    #[inline]
+    #[inline(always)]
     fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
         if wo.z > 0.0 { CosineHemisphere.pdf(wi) } else { 0.0 }
     }
 
-    #[inline]
+    #[inline(always)]
     fn lobes(&self) -> Lobes {
         Lobes { reflection: true, transmission: false, delta: false }
     }
 
-    #[inline]
+    #[inline(always)]
     fn albedo(&self) -> Rgb {
         self.albedo
     }

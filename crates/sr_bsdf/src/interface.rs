@@ -23,7 +23,7 @@ pub struct DielectricSplit {
 ///
 /// - `cos_i`: cosine between the normal and the direction towards the near side; negative: from inside
 /// - `eta`: interior over exterior index, positive
-#[inline]
+#[inline(always)]
 pub fn dielectric(cos_i: f32, eta: f32) -> DielectricSplit {
     let eta = if cos_i >= 0.0 { eta } else { 1.0 / eta };
     let c = cos_i.abs();
@@ -47,7 +47,7 @@ pub fn dielectric(cos_i: f32, eta: f32) -> DielectricSplit {
 /// - `cos_i`: cosine between the normal and either direction, in [0, 1]
 /// - `eta`, `k`: real and imaginary part of the index over the exterior's, per channel
 /// - returns: per channel, in [0, 1]
-#[inline]
+#[inline(always)]
 pub fn conductor(cos_i: f32, eta: Rgb, k: Rgb) -> Rgb {
     let cos_squared = Rgb::splat(cos_i * cos_i);
     let sin_squared = Rgb::ONE - cos_squared;
@@ -62,13 +62,13 @@ pub fn conductor(cos_i: f32, eta: Rgb, k: Rgb) -> Rgb {
 }
 
 /// (x − y) / (x + y) for x ≥ y ≥ 0, with the limit at grazing incidence, 1, where both are 0.
-#[inline]
+#[inline(always)]
 fn ratio(x: Rgb, y: Rgb) -> Rgb {
     let sum = x + y;
     Rgb::select(sum.cmpgt(Rgb::ZERO), (x - y).max(Rgb::ZERO) / sum, Rgb::ONE)
 }
 
-#[inline]
+#[inline(always)]
 fn sqrt(x: Rgb) -> Rgb {
     Rgb::new(x.x.sqrt(), x.y.sqrt(), x.z.sqrt())
 }
@@ -101,13 +101,13 @@ fn diffuse_reflectance_above_1(n: f64) -> f64 {
 }
 
 /// `w` mirrored about the normal +Z.
-#[inline]
+#[inline(always)]
 pub fn reflect(w: Vec3) -> Vec3 {
     Vec3::new(-w.x, -w.y, w.z)
 }
 
 /// `w` mirrored about the unit vector `m`.
-#[inline]
+#[inline(always)]
 pub fn reflect_about(w: Vec3, m: Vec3) -> Vec3 {
     2.0 * w.dot(m) * m - w
 }
@@ -115,7 +115,7 @@ pub fn reflect_about(w: Vec3, m: Vec3) -> Vec3 {
 /// `w` refracted at an interface whose unit normal `m` is on the side of `w`.
 ///
 /// `split` is what [`dielectric`] says of w · m; not under total internal reflection.
-#[inline]
+#[inline(always)]
 pub fn refract_about(w: Vec3, m: Vec3, split: DielectricSplit) -> Vec3 {
     (w.dot(m) / split.eta - split.cos_t) * m - w / split.eta
 }

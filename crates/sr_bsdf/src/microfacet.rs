@@ -11,21 +11,12 @@ use std::f32::consts::FRAC_1_PI;
 
 use glam::{Vec2, Vec3};
 
-use crate::{beckmann, ggx};
-
-/// The shape of the distribution of microfacet normals.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum MicrofacetKind {
-    /// Beckmann: Gaussian slopes.
-    Beckmann,
-    /// GGX, also called Trowbridge–Reitz: longer tails.
-    Ggx,
-}
+use crate::{MicrofacetKind, MicrofacetShape};
 
 /// A distribution of microfacet normals, with roughness along x and y.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Microfacet {
-    kind: MicrofacetKind,
+pub struct Microfacet<S = MicrofacetKind> {
+    shape: S,
     alpha: Vec2,
 }
 
@@ -34,24 +25,32 @@ impl Microfacet {
     pub const MIN_ALPHA: f32 = 1e-4;
     /// The largest roughness; the normals are all but horizontal.
     pub const MAX_ALPHA: f32 = 1e2;
+}
 
-    /// From roughness along x and y, brought into [`Self::MIN_ALPHA`]`..=`[`Self::MAX_ALPHA`].
-    #[inline]
-    pub fn new(kind: MicrofacetKind, alpha_x: f32, alpha_y: f32) -> Self {
-        let bounded = |a: f32| a.clamp(Self::MIN_ALPHA, Self::MAX_ALPHA);
-        Self { kind, alpha: Vec2::new(bounded(alpha_x), bounded(alpha_y)) }
+impl<S: MicrofacetShape> Microfacet<S> {
+    /// From roughness along x and y, brought into [`Microfacet::MIN_ALPHA`]`..=`[`Microfacet::MAX_ALPHA`].
+    #[inline(always)]
+    pub fn new(shape: S, alpha_x: f32, alpha_y: f32) -> Self {
+        let (low, high) = (Vec2::splat(Microfacet::MIN_ALPHA), Vec2::splat(Microfacet::MAX_ALPHA));
+        Self { shape, alpha: Vec2::new(alpha_x, alpha_y).max(low).min(high) }
     }
 
     /// The same roughness in all directions.
-    #[inline]
-    pub fn isotropic(kind: MicrofacetKind, alpha: f32) -> Self {
-        Self::new(kind, alpha, alpha)
+    #[inline(always)]
+    pub fn isotropic(shape: S, alpha: f32) -> Self {
+        Self::new(shape, alpha, alpha)
     }
 
     /// The shape.
     #[inline]
     pub fn kind(&self) -> MicrofacetKind {
-        self.kind
+        self.shape.kind()
+    }
+
+    /// The same distribution, of a shape that is known at run time.
+    #[inline]
+    pub fn of_any_shape(&self) -> Microfacet {
+        Microfacet { shape: self.kind(), alpha: self.alpha }
     }
 
     /// Roughness along x and y.
@@ -61,57 +60,47 @@ impl Microfacet {
     }
 
     /// D(m): area of facets with normal `m`, per area of surface and solid angle, in sr⁻¹.
-    #[inline]
+    #[inline(always)]
     pub fn d(&self, m: Vec3) -> f32 {
         if m.z <= 0.0 {
             return 0.0;
         }
         let slope = Vec2::new(m.x, m.y) / self.alpha;
-        let shape = match self.kind {
-            MicrofacetKind::Beckmann => beckmann::d(slope.length_squared(), m.z),
-            MicrofacetKind::Ggx => ggx::d(slope.length_squared(), m.z),
-        };
-        shape * FRAC_1_PI / (self.alpha.x * self.alpha.y)
+        self.shape.d(slope.length_squared(), m.z) * FRAC_1_PI / (self.alpha.x * self.alpha.y)
     }
 
     /// σ(w) = |cos θ| (1 + Λ(w)): the area of facets seen from `w`, per area of surface. Positive.
-    #[inline]
+    #[inline(always)]
     pub fn projected_area(&self, w: Vec3) -> f32 {
         let spread = (self.alpha * Vec2::new(w.x, w.y)).length();
-        match self.kind {
-            MicrofacetKind::Beckmann => beckmann::projected_area(w.z.abs(), spread),
-            MicrofacetKind::Ggx => ggx::projected_area(w.z.abs(), spread),
-        }
+        self.shape.projected_area(w.z.abs(), spread)
     }
 
     /// Smith's G₁(w): the fraction of the facets facing `w` that are seen from there.
     ///
     /// It depends on `w` only; that `w` sees the facet from above is for the caller to know.
-    #[inline]
+    #[inline(always)]
     pub fn g1(&self, w: Vec3) -> f32 {
         (w.z.abs() / self.projected_area(w)).min(1.0)
     }
 
     /// Draws a normal `m` of those seen from `wo`, with density [`Self::visible_pdf`]. wo.z > 0.
-    #[inline]
+    #[inline(always)]
     pub fn sample_visible(&self, wo: Vec3, u: Vec2) -> Vec3 {
         // Seen through a frame squeezed by α, the surface has roughness 1 in all directions.
         let squeezed = (self.alpha.extend(1.0) * wo).normalize();
-        let m = match self.kind {
-            MicrofacetKind::Beckmann => beckmann::sample_visible(squeezed, u),
-            MicrofacetKind::Ggx => ggx::sample_visible(squeezed, u),
-        };
+        let m = self.shape.sample_visible(squeezed, u);
         (self.alpha.extend(1.0) * m).normalize()
     }
 
     /// The density of visible normals, max(0, wo · m) D(m) / σ(wo), in sr⁻¹ (Heitz & d'Eon 2014, eq. 2).
-    #[inline]
+    #[inline(always)]
     pub fn visible_pdf(&self, wo: Vec3, m: Vec3) -> f32 {
         wo.dot(m).max(0.0) * self.d(m) / self.projected_area(wo)
     }
 
     /// D G / (4 cos θₒ cos θᵢ), in sr⁻¹: facets with normal `m` that are mirrors between `wo` and `wi`.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn reflection(&self, wo: Vec3, wi: Vec3, m: Vec3) -> f32 {
         self.d(m) / (4.0 * self.projected_area(wo) * self.projected_area(wi))
     }
@@ -119,7 +108,7 @@ impl Microfacet {
     /// The density in sr⁻¹ of `wo` mirrored about a visible normal, where that normal is `m`.
     ///
     /// The visible normals' density over dwᵢ/dm = 4 wo · m.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn reflection_pdf(&self, wo: Vec3, m: Vec3) -> f32 {
         self.d(m) / (4.0 * self.projected_area(wo))
     }

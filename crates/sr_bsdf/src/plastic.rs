@@ -2,7 +2,7 @@
 
 use std::f32::consts::FRAC_1_PI;
 
-use glam::{Vec2, Vec3};
+use glam::{BVec3, Vec2, Vec3};
 use sr_sampling::Distribution;
 use sr_sampling::warp::CosineHemisphere;
 
@@ -41,7 +41,7 @@ impl Plastic {
     /// - `diffuse`: albedo of the base, per channel in [0, 1]
     /// - `specular`: scales the coating's reflection; physically 1
     /// - `nonlinear`: does the base's colour saturate by interreflection below the coating?
-    #[inline]
+    #[inline(always)]
     pub fn new(coat: SmoothCoat, diffuse: Rgb, specular: Rgb, nonlinear: bool) -> Self {
         Self {
             eta: coat.eta,
@@ -53,7 +53,7 @@ impl Plastic {
 }
 
 impl Bsdf for Plastic {
-    #[inline]
+    #[inline(always)]
     fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
         if wo.z <= 0.0 || wi.z <= 0.0 {
             return Rgb::ZERO;
@@ -62,27 +62,27 @@ impl Bsdf for Plastic {
         self.base * (split_o.transmittance * split_i.transmittance * FRAC_1_PI)
     }
 
-    #[inline]
+    /// Does not branch: loops serve many points at a time.
+    #[inline(always)]
     fn sample(&self, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
-        if wo.z <= 0.0 {
-            return None;
-        }
         let split = dielectric(wo.z, self.eta);
         let p = self.choice.given_transmittance(split.transmittance);
-        if u_lobe < p.specular {
-            let weight = self.specular * (split.reflectance / p.specular);
-            return Some(BsdfSample { wi: reflect(wo), weight, pdf: p.specular, delta: true, eta: 1.0 });
-        }
-        if p.diffuse == 0.0 {
-            return None;
-        }
-        let s = CosineHemisphere.sample(u)?;
-        let t_i = dielectric(s.value.z, self.eta).transmittance;
+        let delta = u_lobe < p.specular;
+        let scattered = CosineHemisphere.sample(u).map_or(Vec3::ZERO, |s| s.value);
+        let t_i = dielectric(scattered.z, self.eta).transmittance;
+        let mirrored = self.specular * (split.reflectance / p.specular);
         let weight = self.base * (t_i * (split.transmittance / p.diffuse));
-        Some(BsdfSample { wi: s.value, weight, pdf: p.diffuse * s.pdf, delta: false, eta: 1.0 })
+        let counts = (wo.z > 0.0) & (delta | ((p.diffuse > 0.0) & (scattered.z > 0.0)));
+        counts.then_some(BsdfSample {
+            wi: Vec3::select(BVec3::splat(delta), reflect(wo), scattered),
+            weight: Rgb::select(BVec3::splat(delta), mirrored, weight),
+            pdf: if delta { p.specular } else { p.diffuse * CosineHemisphere.pdf(scattered) },
+            delta,
+            eta: 1.0,
+        })
     }
 
-    #[inline]
+    #[inline(always)]
     fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
         if wo.z <= 0.0 || wi.z <= 0.0 {
             return 0.0;
@@ -91,12 +91,12 @@ impl Bsdf for Plastic {
         p.diffuse * CosineHemisphere.pdf(wi)
     }
 
-    #[inline]
+    #[inline(always)]
     fn lobes(&self) -> Lobes {
         Lobes { reflection: true, transmission: false, delta: true }
     }
 
-    #[inline]
+    #[inline(always)]
     fn albedo(&self) -> Rgb {
         let split = dielectric(1.0, self.eta);
         split.reflectance * self.specular + split.transmittance * split.transmittance * self.base
@@ -106,7 +106,7 @@ impl Bsdf for Plastic {
 /// Albedo of a base below a coating, for light that has passed the coating once, before it passes it again.
 ///
 /// All bounces between base and coating are summed; the solid angle that widens on leaving takes 1/η².
-#[inline]
+#[inline(always)]
 pub(crate) fn base_below(diffuse: Rgb, internal_reflectance: f32, eta: f32, nonlinear: bool) -> Rgb {
     let returned = if nonlinear { diffuse * internal_reflectance } else { Rgb::splat(internal_reflectance) };
     diffuse / ((Rgb::ONE - returned) * (eta * eta))
@@ -128,13 +128,13 @@ pub(crate) struct LobeProbabilities {
 }
 
 impl LobeChoice {
-    #[inline]
+    #[inline(always)]
     pub fn new(diffuse: Rgb, specular: Rgb) -> Self {
         Self { specular: specular.element_sum(), diffuse: diffuse.element_sum() }
     }
 
     /// Given the fraction of light that the coating lets through.
-    #[inline]
+    #[inline(always)]
     pub fn given_transmittance(&self, t: f32) -> LobeProbabilities {
         let (specular, diffuse) = ((1.0 - t) * self.specular, t * self.diffuse);
         let sum = specular + diffuse;

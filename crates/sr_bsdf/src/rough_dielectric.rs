@@ -3,29 +3,29 @@
 use glam::{Vec2, Vec3};
 
 use crate::interface::{dielectric, reflect_about, refract_about};
-use crate::{Bsdf, BsdfSample, Lobes, Microfacet, Rgb};
+use crate::{Bsdf, BsdfSample, Lobes, Microfacet, MicrofacetKind, MicrofacetShape, Rgb};
 
 /// A surface of small smooth interfaces (Walter et al. 2007).
 ///
 /// Radiance that crosses the interface is scaled by 1/η², as for [`crate::Dielectric`]. One bounce
 /// only, so a rough surface loses some energy.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RoughDielectric {
-    distribution: Microfacet,
+pub struct RoughDielectric<S = MicrofacetKind> {
+    distribution: Microfacet<S>,
     eta: f32,
     reflectance: Rgb,
     transmittance: Rgb,
 }
 
-impl RoughDielectric {
+impl<S: MicrofacetShape> RoughDielectric<S> {
     /// An interface between media more alike than this bends light less than `f32` can tell.
     const MIN_CONTRAST: f32 = 1e-4;
 
     /// - `eta`: index inside (−Z) over that outside (+Z), positive; moved away from 1 if it is nearer
     ///   than 10⁻⁴, for a rough interface that does not bend light is no longer a density
     /// - `reflectance`, `transmittance`: scale what Fresnel's equations give; physically 1
-    #[inline]
-    pub fn new(distribution: Microfacet, eta: f32, reflectance: Rgb, transmittance: Rgb) -> Self {
+    #[inline(always)]
+    pub fn new(distribution: Microfacet<S>, eta: f32, reflectance: Rgb, transmittance: Rgb) -> Self {
         let contrast = eta - 1.0;
         let eta = if contrast.abs() < Self::MIN_CONTRAST {
             1.0 + Self::MIN_CONTRAST.copysign(contrast)
@@ -35,8 +35,15 @@ impl RoughDielectric {
         Self { distribution, eta, reflectance, transmittance }
     }
 
+    /// The same model, its shape known at run time.
+    #[inline(always)]
+    pub fn of_any_shape(self) -> RoughDielectric {
+        let Self { distribution, eta, reflectance, transmittance } = self;
+        RoughDielectric { distribution: distribution.of_any_shape(), eta, reflectance, transmittance }
+    }
+
     /// Turns the frame so that `wo` is on the side of +Z; gives the far index over the near one.
-    #[inline]
+    #[inline(always)]
     fn seen_from_above(&self, wo: Vec3, wi: Vec3) -> (Vec3, Vec3, f32) {
         if wo.z > 0.0 { (wo, wi, self.eta) } else { (flip(wo), flip(wi), 1.0 / self.eta) }
     }
@@ -51,7 +58,7 @@ struct RefractingFacet {
 }
 
 /// `None` if no facet refracts between `wo` (above) and `wi` (below).
-#[inline]
+#[inline(always)]
 fn refracting_facet(wo: Vec3, wi: Vec3, eta: f32) -> Option<RefractingFacet> {
     let h = wo + eta * wi;
     let length_squared = h.length_squared(); // is (wo · m + η wi · m)²
@@ -64,13 +71,13 @@ fn refracting_facet(wo: Vec3, wi: Vec3, eta: f32) -> Option<RefractingFacet> {
     Some(RefractingFacet { m, factor, cos_o })
 }
 
-#[inline]
+#[inline(always)]
 fn flip(w: Vec3) -> Vec3 {
     Vec3::new(w.x, w.y, -w.z)
 }
 
-impl Bsdf for RoughDielectric {
-    #[inline]
+impl<S: MicrofacetShape> Bsdf for RoughDielectric<S> {
+    #[inline(always)]
     fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
         let (wo, wi, eta) = self.seen_from_above(wo, wi);
         if wo.z == 0.0 || wi.z == 0.0 {
@@ -86,7 +93,7 @@ impl Bsdf for RoughDielectric {
         self.transmittance * (facet.factor * facet.cos_o * self.distribution.d(facet.m) / area)
     }
 
-    #[inline]
+    #[inline(always)]
     fn sample(&self, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
         if wo.z == 0.0 {
             return None;
@@ -122,7 +129,7 @@ impl Bsdf for RoughDielectric {
         (sample.pdf > 0.0).then_some(BsdfSample { wi, weight, ..sample })
     }
 
-    #[inline]
+    #[inline(always)]
     fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
         let (wo, wi, eta) = self.seen_from_above(wo, wi);
         if wo.z == 0.0 || wi.z == 0.0 {
@@ -136,12 +143,12 @@ impl Bsdf for RoughDielectric {
             .map_or(0.0, |facet| facet.factor * eta * eta * self.distribution.visible_pdf(wo, facet.m))
     }
 
-    #[inline]
+    #[inline(always)]
     fn lobes(&self) -> Lobes {
         Lobes { reflection: true, transmission: true, delta: false }
     }
 
-    #[inline]
+    #[inline(always)]
     fn albedo(&self) -> Rgb {
         self.transmittance.lerp(self.reflectance, dielectric(1.0, self.eta).reflectance)
     }

@@ -2,115 +2,129 @@
 
 use std::f32::consts::FRAC_1_PI;
 
-use glam::{Vec2, Vec3};
+use glam::{BVec3, Vec2, Vec3};
 use sr_sampling::Distribution;
 use sr_sampling::warp::CosineHemisphere;
 
 use crate::interface::{dielectric, reflect_about};
 use crate::plastic::{LobeChoice, LobeProbabilities, base_below};
 use crate::rough_coat::RoughPlasticTables;
-use crate::{Bsdf, BsdfSample, Lobes, Rgb};
+use crate::{Bsdf, BsdfSample, Lobes, Microfacet, MicrofacetKind, MicrofacetShape, Rgb};
 
 /// A rough coating that reflects, over a base that scatters in all directions.
 ///
 /// As [`crate::Plastic`], but with what a rough interface lets through (one bounce) from a table. On the
 /// side of +Z only.
 #[derive(Clone, Copy, Debug)]
-pub struct RoughPlastic<'a> {
+pub struct RoughPlastic<'a, S = MicrofacetKind> {
     coat: &'a RoughPlasticTables,
+    distribution: Microfacet<S>,
+    eta: f32,
     specular: Rgb,
     base: Rgb,
     choice: LobeChoice,
 }
 
 impl<'a> RoughPlastic<'a> {
+    /// [`RoughPlastic::of_distribution`], with that of the coat.
+    #[inline(always)]
+    pub fn new(coat: &'a RoughPlasticTables, diffuse: Rgb, specular: Rgb, nonlinear: bool) -> Self {
+        Self::of_distribution(*coat.distribution(), coat, diffuse, specular, nonlinear)
+    }
+}
+
+impl<'a, S: MicrofacetShape> RoughPlastic<'a, S> {
+    /// - `distribution`: that of the coat
     /// - `coat`: made once per material
     /// - `diffuse`: albedo of the base, per channel in [0, 1]
     /// - `specular`: scales the coating's reflection; physically 1
     /// - `nonlinear`: does the base's colour saturate by interreflection below the coating?
-    #[inline]
-    pub fn new(coat: &'a RoughPlasticTables, diffuse: Rgb, specular: Rgb, nonlinear: bool) -> Self {
+    #[inline(always)]
+    pub fn of_distribution(
+        distribution: Microfacet<S>,
+        coat: &'a RoughPlasticTables,
+        diffuse: Rgb,
+        specular: Rgb,
+        nonlinear: bool,
+    ) -> Self {
         Self {
             coat,
+            distribution,
+            eta: coat.eta(),
             specular,
             base: base_below(diffuse, coat.internal_reflectance(), coat.eta(), nonlinear),
             choice: LobeChoice::new(diffuse, specular),
         }
     }
 
+    /// The same model, its shape known at run time.
+    #[inline(always)]
+    pub fn of_any_shape(self) -> RoughPlastic<'a> {
+        let Self { coat, distribution, eta, specular, base, choice } = self;
+        RoughPlastic { coat, distribution: distribution.of_any_shape(), eta, specular, base, choice }
+    }
+
     /// f and the density for two directions above the surface whose halfway vector is `m`.
-    #[inline]
+    #[inline(always)]
     fn eval_pdf(&self, wo: Vec3, wi: Vec3, m: Vec3, p: LobeProbabilities, t_o: f32) -> (Rgb, f32) {
-        let distribution = self.coat.distribution();
+        let distribution = &self.distribution;
         let mirrored = distribution.reflection_pdf(wo, m);
-        let f = dielectric(wo.dot(m), self.coat.eta()).reflectance;
+        let f = dielectric(wo.dot(m), self.eta).reflectance;
         let specular = self.specular * (f * mirrored / distribution.projected_area(wi));
         let diffuse = self.base * (t_o * self.coat.transmittance(wi.z) * FRAC_1_PI);
         (specular + diffuse, p.specular * mirrored + p.diffuse * CosineHemisphere.pdf(wi))
     }
 
-    #[inline]
+    #[inline(always)]
     fn lobe_probabilities(&self, t_o: f32) -> LobeProbabilities {
         self.choice.given_transmittance(t_o)
     }
 }
 
-impl Bsdf for RoughPlastic<'_> {
-    #[inline]
+/// Nothing here branches, so that compilers can serve many points at a time: what does not count is computed as well.
+impl<S: MicrofacetShape> Bsdf for RoughPlastic<'_, S> {
+    #[inline(always)]
     fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
-        if wo.z <= 0.0 || wi.z <= 0.0 {
-            return Rgb::ZERO;
-        }
         let m = (wo + wi).normalize_or_zero();
         let t_o = self.coat.transmittance(wo.z);
-        self.eval_pdf(wo, wi, m, self.lobe_probabilities(t_o), t_o).0
+        let (f, _) = self.eval_pdf(wo, wi, m, self.lobe_probabilities(t_o), t_o);
+        Rgb::select(BVec3::splat(wo.z > 0.0 && wi.z > 0.0), f, Rgb::ZERO)
     }
 
-    #[inline]
+    #[inline(always)]
     fn sample(&self, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
-        if wo.z <= 0.0 {
-            return None;
-        }
         let t_o = self.coat.transmittance(wo.z);
         let p = self.lobe_probabilities(t_o);
-        let (wi, m) = if u_lobe < p.specular {
-            let m = self.coat.distribution().sample_visible(wo, u);
-            (reflect_about(wo, m), m)
-        } else if p.diffuse > 0.0 {
-            let wi = CosineHemisphere.sample(u)?.value;
-            (wi, (wo + wi).normalize_or_zero())
-        } else {
-            return None;
-        };
-        if wi.z <= 0.0 {
-            return None;
-        }
+        let mirrored = reflect_about(wo, self.distribution.sample_visible(wo, u));
+        let scattered = CosineHemisphere.sample(u).map_or(Vec3::ZERO, |s| s.value);
+        let wi = Vec3::select(BVec3::splat(u_lobe < p.specular), mirrored, scattered);
+        let m = (wo + wi).normalize_or_zero();
         let (f, pdf) = self.eval_pdf(wo, wi, m, p, t_o);
-        (pdf > f32::MIN_POSITIVE).then(|| BsdfSample {
+        let weight = f * (wi.z / pdf);
+        let is_above = (wo.z > 0.0) & (wi.z > 0.0);
+        (is_above & (pdf > f32::MIN_POSITIVE) & (weight.max_element() > 0.0)).then_some(BsdfSample {
             wi,
-            weight: f * (wi.z / pdf),
+            weight,
             pdf,
             delta: false,
             eta: 1.0,
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        if wo.z <= 0.0 || wi.z <= 0.0 {
-            return 0.0;
-        }
         let p = self.lobe_probabilities(self.coat.transmittance(wo.z));
         let m = (wo + wi).normalize_or_zero();
-        p.specular * self.coat.distribution().reflection_pdf(wo, m) + p.diffuse * CosineHemisphere.pdf(wi)
+        let pdf = p.specular * self.distribution.reflection_pdf(wo, m) + p.diffuse * CosineHemisphere.pdf(wi);
+        if wo.z > 0.0 && wi.z > 0.0 { pdf } else { 0.0 }
     }
 
-    #[inline]
+    #[inline(always)]
     fn lobes(&self) -> Lobes {
         Lobes { reflection: true, transmission: false, delta: false }
     }
 
-    #[inline]
+    #[inline(always)]
     fn albedo(&self) -> Rgb {
         let t = self.coat.transmittance(1.0);
         (1.0 - t) * self.specular + t * t * self.base

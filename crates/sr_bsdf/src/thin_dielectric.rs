@@ -19,13 +19,13 @@ pub struct ThinDielectric {
 impl ThinDielectric {
     /// - `eta`: index of the plate over that of its surroundings, positive
     /// - `reflectance`, `transmittance`: scale what Fresnel's equations give; physically 1
-    #[inline]
+    #[inline(always)]
     pub fn new(eta: f32, reflectance: Rgb, transmittance: Rgb) -> Self {
         Self { eta, reflectance, transmittance }
     }
 
     /// The fraction that the plate reflects.
-    #[inline]
+    #[inline(always)]
     fn plate_reflectance(&self, cos: f32) -> f32 {
         let r = dielectric(cos, self.eta).reflectance;
         2.0 * r / (1.0 + r)
@@ -33,12 +33,12 @@ impl ThinDielectric {
 }
 
 impl Bsdf for ThinDielectric {
-    #[inline]
+    #[inline(always)]
     fn eval(&self, _wo: Vec3, _wi: Vec3) -> Rgb {
         Rgb::ZERO
     }
 
-    #[inline]
+    #[inline(always)]
     fn sample(&self, wo: Vec3, u_lobe: f32, _u: Vec2) -> Option<BsdfSample> {
         if wo.z == 0.0 {
             return None;
@@ -49,17 +49,17 @@ impl Bsdf for ThinDielectric {
         Some(BsdfSample { wi, weight, pdf, delta: true, eta: 1.0 })
     }
 
-    #[inline]
+    #[inline(always)]
     fn pdf(&self, _wo: Vec3, _wi: Vec3) -> f32 {
         0.0
     }
 
-    #[inline]
+    #[inline(always)]
     fn lobes(&self) -> Lobes {
         Lobes { reflection: false, transmission: false, delta: true }
     }
 
-    #[inline]
+    #[inline(always)]
     fn albedo(&self) -> Rgb {
         self.transmittance.lerp(self.reflectance, self.plate_reflectance(1.0))
     }
