@@ -8,12 +8,13 @@ use std::sync::{Arc, LazyLock};
 use glam::{Affine2, Vec2, Vec3};
 use sr_scene::{ColorInput, Filter, Image, Pixels, Rgb, ScalarInput, TextureDesc, TextureId, Wrap};
 
-/// Linear value of each 8-bit sRGB code (IEC 61966-2-1).
-static SRGB_TO_LINEAR: LazyLock<[f32; 256]> = LazyLock::new(|| {
-    std::array::from_fn(|code| {
+/// What 8-bit codes mean: of linear images, and of those encoded as sRGB (IEC 61966-2-1).
+static DECODED: LazyLock<[[f32; 256]; 2]> = LazyLock::new(|| {
+    let srgb = |code| {
         let c = code as f64 / 255.0;
         (if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }) as f32
-    })
+    };
+    [std::array::from_fn(|code| code as f32 / 255.0), std::array::from_fn(srgb)]
 });
 
 /// Luminance of linear sRGB (ITU-R BT.709).
@@ -61,7 +62,7 @@ impl Textures {
     }
 
     /// A colour input at a surface coordinate.
-    #[inline]
+    #[inline(always)]
     pub fn color(&self, input: ColorInput, uv: Vec2) -> Rgb {
         match input {
             ColorInput::Constant(color) => color,
@@ -70,7 +71,7 @@ impl Textures {
     }
 
     /// A scalar input at a surface coordinate: the luminance of a texture.
-    #[inline]
+    #[inline(always)]
     pub fn scalar(&self, input: ScalarInput, uv: Vec2) -> f32 {
         match input {
             ScalarInput::Constant(value) => value,
@@ -124,28 +125,28 @@ impl Textures {
         }
     }
 
+    /// Not inlined: many places ask for it, and it has no loop to be part of.
+    #[inline(never)]
     fn lookup(&self, id: TextureId, uv: Vec2) -> Rgb {
         match &self.textures[id.0 as usize] {
             Texture::Checkerboard { colors, to_uv } => {
                 let t = to_uv.transform_point2(uv);
-                let far = t - t.floor();
-                colors[usize::from((far.x > 0.5) != (far.y > 0.5))]
+                let is_far = |x: f32| x - to_cell(x) as f32 > 0.5;
+                colors[usize::from(is_far(t.x) != is_far(t.y))]
             }
             Texture::Bitmap { image, filter, wrap, srgb, to_uv } => {
                 let image = &self.images[*image as usize];
                 let at = to_uv.transform_point2(uv);
                 let at = at * Vec2::new(image.width as f32, image.height as f32);
-                let fetch = |x: i32, y: i32| {
-                    texel(image, *srgb, wrapped(x, image.width, *wrap), wrapped(y, image.height, *wrap))
-                };
+                let column = |x: i32| wrapped(x, image.width, *wrap);
+                let row = |y: i32| wrapped(y, image.height, *wrap);
                 match filter {
-                    Filter::Nearest => fetch(to_cell(at.x), to_cell(at.y)),
+                    Filter::Nearest => texel(image, *srgb, column(to_cell(at.x)), row(to_cell(at.y))),
                     Filter::Bilinear => {
                         let at = at - 0.5;
-                        let (x, y, t) = (to_cell(at.x), to_cell(at.y), at - at.floor());
-                        let top = fetch(x, y).lerp(fetch(x + 1, y), t.x);
-                        let bottom = fetch(x, y + 1).lerp(fetch(x + 1, y + 1), t.x);
-                        top.lerp(bottom, t.y)
+                        let (x, y) = (to_cell(at.x), to_cell(at.y));
+                        let t = at - Vec2::new(x as f32, y as f32);
+                        bilinear(image, *srgb, [column(x), column(x + 1)], [row(y), row(y + 1)], t)
                     }
                 }
             }
@@ -153,18 +154,22 @@ impl Textures {
     }
 }
 
-/// The integer cell of a coordinate, kept away from the ends of `i32`.
+/// The integer cell of a coordinate, kept away from the ends of `i32`. (`floor` is a library call without SSE 4.1.)
 #[inline]
-fn to_cell(x: f32) -> i32 {
-    x.floor().clamp(-1e9, 1e9) as i32
+pub(crate) fn to_cell(x: f32) -> i32 {
+    let towards_zero = x.clamp(-1e9, 1e9) as i32;
+    towards_zero - i32::from(towards_zero as f32 > x)
 }
 
 #[inline]
 fn wrapped(i: i32, size: u32, wrap: Wrap) -> u32 {
+    if (i as u32) < size { i as u32 } else { wrapped_around(i, size, wrap) }
+}
+
+/// Rare: out of line.
+#[cold]
+fn wrapped_around(i: i32, size: u32, wrap: Wrap) -> u32 {
     let n = size as i32;
-    if (i as u32) < size && i >= 0 {
-        return i as u32;
-    }
     (match wrap {
         Wrap::Repeat => i.rem_euclid(n),
         Wrap::Clamp => i.clamp(0, n - 1),
@@ -179,23 +184,44 @@ fn wrapped(i: i32, size: u32, wrap: Wrap) -> u32 {
 /// One texel, linear; grey images give equal channels, alpha is ignored.
 #[inline]
 pub(crate) fn texel(image: &Image, srgb: bool, x: u32, y: u32) -> Rgb {
-    let index = y as usize * image.width as usize + x as usize;
+    let at = y as usize * image.width as usize + x as usize;
     match &image.pixels {
+        Pixels::U8 { channels, data } => decoded(data, *channels, &DECODED[usize::from(srgb)], at),
+        Pixels::F32 { channels, data } => rgb(data, *channels, at),
+    }
+}
+
+/// Between four texels, of two columns and two rows, which must be inside the image: bilinear, by the fractions `t`.
+#[inline]
+pub(crate) fn bilinear(image: &Image, srgb: bool, [x0, x1]: [u32; 2], [y0, y1]: [u32; 2], t: Vec2) -> Rgb {
+    let (x0, x1) = (x0 as usize, x1 as usize);
+    let (row0, row1) = (y0 as usize * image.width as usize, y1 as usize * image.width as usize);
+    let [a, b, c, d] = match &image.pixels {
         Pixels::U8 { channels, data } => {
-            let table = &*SRGB_TO_LINEAR;
-            let decode = |code: u8| if srgb { table[code as usize] } else { f32::from(code) / 255.0 };
-            let i = index * *channels as usize;
-            if *channels < 3 {
-                Rgb::splat(decode(data[i]))
-            } else {
-                Rgb::new(decode(data[i]), decode(data[i + 1]), decode(data[i + 2]))
-            }
+            let table = &DECODED[usize::from(srgb)];
+            [row0 + x0, row0 + x1, row1 + x0, row1 + x1].map(|at| decoded(data, *channels, table, at))
         }
         Pixels::F32 { channels, data } => {
-            let i = index * *channels as usize;
-            if *channels < 3 { Rgb::splat(data[i]) } else { Rgb::new(data[i], data[i + 1], data[i + 2]) }
+            [row0 + x0, row0 + x1, row1 + x0, row1 + x1].map(|at| rgb(data, *channels, at))
         }
+    };
+    a.lerp(b, t.x).lerp(c.lerp(d, t.x), t.y)
+}
+
+#[inline(always)]
+fn decoded(data: &[u8], channels: u8, table: &[f32; 256], at: usize) -> Rgb {
+    let at = at * usize::from(channels);
+    if channels < 3 {
+        return Rgb::splat(table[usize::from(data[at])]);
     }
+    let codes = &data[at..at + 3];
+    Rgb::new(table[usize::from(codes[0])], table[usize::from(codes[1])], table[usize::from(codes[2])])
+}
+
+#[inline(always)]
+fn rgb(data: &[f32], channels: u8, at: usize) -> Rgb {
+    let at = at * usize::from(channels);
+    if channels < 3 { Rgb::splat(data[at]) } else { Rgb::from_slice(&data[at..at + 3]) }
 }
 
 #[cfg(test)]
@@ -245,7 +271,7 @@ mod tests {
 
     #[test]
     fn srgb_codes_decode() {
-        assert!((SRGB_TO_LINEAR[128] - 0.215_86).abs() < 1e-5);
-        assert_eq!(SRGB_TO_LINEAR[255], 1.0);
+        assert!((DECODED[1][128] - 0.215_86).abs() < 1e-5);
+        assert_eq!((DECODED[0][51], DECODED[0][255], DECODED[1][255]), (0.2, 1.0, 1.0));
     }
 }

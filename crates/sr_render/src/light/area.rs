@@ -4,7 +4,7 @@ use std::f32::consts::PI;
 
 use glam::{Vec2, Vec3};
 use sr_sampling::warp::{barycentrics, concentric_disk};
-use sr_sampling::{AliasTable, to_solid_angle};
+use sr_sampling::{AliasTable, Plane, Sample, to_solid_angle};
 use sr_scene::{ColorInput, Rgb};
 
 use super::{LightId, LightSample, Target};
@@ -105,6 +105,8 @@ pub(super) enum Piece {
     Patch(Patch, f32),
     /// A sphere that is seen from outside.
     Ball { center: Vec3, radius: f32 },
+    /// A point of the image around the scene, with its density in the image.
+    Sky(Sample<Plane>),
 }
 
 /// A point of a light, seen from another point.

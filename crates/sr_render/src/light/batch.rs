@@ -1,12 +1,15 @@
 //! Directions to lights from many points at a time.
 //!
-//! Pieces of lights (parallelograms, triangles of meshes, spheres) are chosen one by one, and sampled all together.
+//! Pieces of lights (parallelograms, triangles of meshes, spheres, points of the image around the scene) are chosen one
+//! by one, and become directions all together.
 
 use glam::{BVec3, Vec2, Vec3};
 use sr_geometry::{BATCH, Vec2s, Vec3s};
+use sr_sampling::Sample;
 use sr_scene::Rgb;
 
 use super::area::{Patch, Piece, sphere};
+use super::environment::direction;
 use super::{DeltaSample, LightId, LightSample, Lights, Target};
 
 /// [`LightSample`]s from the points of a batch.
@@ -106,28 +109,34 @@ fn set_target(targets: &mut Vec3s, is_far: &mut [u32; BATCH], i: usize, target: 
 
 /// Pieces of lights, one for each point of a batch.
 struct Pieces {
+    /// How many there are of each form.
+    patches: usize,
+    balls: usize,
+    skies: usize,
     /// A flat piece's corner, or the centre of a ball.
     corner: Vec3s,
     edges: [Vec3s; 2],
     normal: Vec3s,
     /// 1 for a triangle, 0 for a parallelogram.
     is_triangle: [u32; BATCH],
-    /// Of a ball; 0 for a flat piece.
+    /// Of a ball; 0 for others.
     radius: [f32; BATCH],
-    /// What the density of choosing a point of it is multiplied by. Of a flat piece, it has the inverse area in it.
+    /// What the density of choosing a point of it is multiplied by. Of a flat piece, it has the inverse area in it; of
+    /// the image around the scene, it is the density in the image.
     factor: [f32; BATCH],
-    light: [u32; BATCH],
 }
 
 impl Pieces {
     const NONE: Self = Self {
+        patches: 0,
+        balls: 0,
+        skies: 0,
         corner: Vec3s::splat(Vec3::ZERO),
         edges: [const { Vec3s::splat(Vec3::ZERO) }; 2],
         normal: Vec3s::splat(Vec3::Z),
         is_triangle: [0; BATCH],
         radius: [0.0; BATCH],
         factor: [0.0; BATCH],
-        light: [0; BATCH],
     };
 
     #[inline(always)]
@@ -141,22 +150,43 @@ impl Pieces {
     }
 
     #[inline(always)]
-    fn set(&mut self, i: usize, piece: &Piece, pmf: f32, light: LightId) {
-        self.light[i] = light.0;
+    fn set_patch(&mut self, i: usize, patch: &Patch, pdf_area: f32) {
+        self.patches += 1;
+        self.corner.set(i, patch.corner);
+        self.edges[0].set(i, patch.edges[0]);
+        self.edges[1].set(i, patch.edges[1]);
+        self.normal.set(i, patch.normal);
+        self.is_triangle[i] = u32::from(patch.is_triangle);
+        (self.radius[i], self.factor[i]) = (0.0, pdf_area);
+    }
+
+    #[inline(always)]
+    fn set_ball(&mut self, i: usize, center: Vec3, radius: f32, pmf: f32) {
+        self.balls += 1;
+        self.corner.set(i, center);
+        (self.radius[i], self.factor[i]) = (radius, pmf);
+    }
+
+    #[inline(always)]
+    fn set_sky(&mut self, i: usize, pdf_uv: f32) {
+        self.skies += 1;
+        (self.radius[i], self.factor[i]) = (0.0, pdf_uv);
+    }
+}
+
+impl LightSamples {
+    /// Takes the piece of a light for point `i`.
+    #[inline(always)]
+    fn take(&mut self, i: usize, piece: &Piece, pmf: f32, LightId(light): LightId) {
+        self.light[i] = light;
+        self.is_far[i] = 0;
         match piece {
-            Piece::Patch(patch, pdf_area) => {
-                self.corner.set(i, patch.corner);
-                self.edges[0].set(i, patch.edges[0]);
-                self.edges[1].set(i, patch.edges[1]);
-                self.normal.set(i, patch.normal);
-                self.is_triangle[i] = u32::from(patch.is_triangle);
-                self.radius[i] = 0.0;
-                self.factor[i] = pmf * pdf_area;
-            }
-            Piece::Ball { center, radius } => {
-                self.corner.set(i, *center);
-                self.radius[i] = *radius;
-                self.factor[i] = pmf;
+            Piece::Patch(patch, pdf_area) => self.pieces.set_patch(i, patch, pmf * pdf_area),
+            Piece::Ball { center, radius } => self.pieces.set_ball(i, *center, *radius, pmf),
+            Piece::Sky(Sample { value: uv, pdf }) => {
+                self.pieces.set_sky(i, pmf * pdf);
+                self.is_far[i] = 1;
+                self.uv.set(i, *uv);
             }
         }
     }
@@ -173,29 +203,29 @@ impl Lights {
         samples: &mut LightSamples,
     ) {
         let count = count.min(BATCH);
-        let LightSamples { wi, pdf, target, is_far, light, pieces, others, .. } = samples;
-        let (mut balls, mut other_count) = (0, 0);
+        let mut other_count = 0;
+        (samples.pieces.patches, samples.pieces.balls, samples.pieces.skies) = (0, 0, 0);
         for i in 0..count {
             let mut is_piece = false;
             if let Some((id, pmf, rest)) = self.pick(u_pick[i])
-                && let Some(piece) = self.piece(id, rest)
+                && let Some(piece) = self.piece(id, rest, u.get(i))
             {
-                balls += usize::from(matches!(piece, Piece::Ball { .. }));
-                pieces.set(i, &piece, pmf, id);
+                samples.take(i, &piece, pmf, id);
                 is_piece = true;
             }
-            others[other_count % BATCH] = i as u32;
+            samples.others[other_count % BATCH] = i as u32;
             other_count += usize::from(!is_piece);
         }
-        for i in 0..count {
-            let seen = pieces.patch(i).sample(pieces.factor[i], from.get(i), u.get(i));
-            wi.set(i, seen.wi);
-            pdf[i] = seen.pdf;
-            target.set(i, seen.p);
-            is_far[i] = 0;
-            light[i] = pieces.light[i];
+        let LightSamples { wi, pdf, target, is_far, uv, pieces, .. } = samples;
+        if pieces.patches > 0 {
+            for i in 0..count {
+                let seen = pieces.patch(i).sample(pieces.factor[i], from.get(i), u.get(i));
+                wi.set(i, seen.wi);
+                pdf[i] = seen.pdf;
+                target.set(i, seen.p);
+            }
         }
-        if balls > 0 {
+        if pieces.balls > 0 {
             for i in 0..count {
                 let (center, radius) = (pieces.corner.get(i), pieces.radius[i]);
                 let seen = sphere::sample_cone(center, radius, from.get(i), u.get(i));
@@ -203,6 +233,17 @@ impl Lights {
                 wi.set(i, Vec3::select(BVec3::splat(is_ball), seen.wi, wi.get(i)));
                 pdf[i] = if is_ball { seen.pdf * pieces.factor[i] } else { pdf[i] };
                 target.set(i, Vec3::select(BVec3::splat(is_ball), seen.p, target.get(i)));
+            }
+        }
+        if let Some(sky) = self.sky()
+            && pieces.skies > 0
+        {
+            let axes = sky.world_from_light();
+            for i in 0..count {
+                let (towards, pdf_towards) = direction(&axes, uv.get(i), pieces.factor[i]);
+                let is_sky = is_far[i] != 0;
+                wi.set(i, Vec3::select(BVec3::splat(is_sky), towards, wi.get(i)));
+                pdf[i] = if is_sky { pdf_towards } else { pdf[i] };
             }
         }
         for k in 0..other_count.min(BATCH) {

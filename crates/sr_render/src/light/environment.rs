@@ -4,12 +4,12 @@ use std::f32::consts::{PI, TAU};
 use std::sync::Arc;
 
 use glam::{Mat3, Vec2, Vec3};
-use sr_sampling::warp::UniformSphere;
-use sr_sampling::{Distribution, PiecewiseConstant2D, Sample};
+use sr_sampling::warp::{UniformSphere, unit_circle};
+use sr_sampling::{Distribution, PiecewiseConstant2D, Plane, Sample};
 use sr_scene::{Image, Pixels, Rgb};
 
 use super::{LightId, LightSample, Target};
-use crate::texture::{luminance, texel};
+use crate::texture::{bilinear, luminance, texel, to_cell};
 
 /// The same radiance from every direction.
 #[derive(Clone, Copy, Debug)]
@@ -90,49 +90,73 @@ impl Environment {
         self.radiance_at(uv_of(self.light_from_world * wi))
     }
 
+    /// [`Self::radiance`] and [`Self::pdf`] of a direction in world space.
+    pub(crate) fn seen_along(&self, wi: Vec3) -> (Rgb, f32) {
+        let local = self.light_from_world * wi;
+        let uv = uv_of(local);
+        (self.radiance_at(uv), self.pdf_of(local, uv))
+    }
+
     /// Radiance at a point of the image.
     pub(crate) fn radiance_at(&self, uv: Vec2) -> Rgb {
         let (width, height) = (self.image.width, self.image.height);
         let at = uv * Vec2::new(width as f32, height as f32) - 0.5;
-        let (cell, t) = (at.floor(), at - at.floor());
-        let column = |x: f32| (x as i64).rem_euclid(i64::from(width)) as u32;
-        let row = |y: f32| (y.max(0.0) as u32).min(height - 1);
-        let fetch = |x: f32, y: f32| texel(&self.image, self.srgb, column(x), row(y));
-        let top = fetch(cell.x, cell.y).lerp(fetch(cell.x + 1.0, cell.y), t.x);
-        let bottom = fetch(cell.x, cell.y + 1.0).lerp(fetch(cell.x + 1.0, cell.y + 1.0), t.x);
-        top.lerp(bottom, t.y) * self.scale
+        let (x, y) = (to_cell(at.x), to_cell(at.y));
+        let t = at - Vec2::new(x as f32, y as f32);
+        let column = |x: i32| {
+            if (x as u32) < width { x as u32 } else { i64::from(x).rem_euclid(i64::from(width)) as u32 }
+        };
+        let row = |y: i32| (y.max(0) as u32).min(height - 1);
+        let (columns, rows) = ([column(x), column(x + 1)], [row(y), row(y + 1)]);
+        bilinear(&self.image, self.srgb, columns, rows, t) * self.scale
     }
 
     /// A direction, in proportion to luminance. `None` from a black image.
-    #[inline(never)]
     pub(crate) fn sample(&self, light: LightId, u: Vec2) -> Option<LightSample> {
-        let Sample { value: uv, pdf } = self.table.as_ref()?.sample(u)?;
-        let (sin_theta, cos_theta) = (PI * uv.y).sin_cos();
-        let (sin_phi, cos_phi) = (TAU * uv.x).sin_cos();
-        let local = Vec3::new(sin_theta * sin_phi, cos_theta, -sin_theta * cos_phi);
-        let pdf = per_solid_angle(pdf, sin_theta);
-        (sin_theta > 0.0 && pdf.is_finite()).then(|| LightSample {
-            wi: self.world_from_light * local,
-            pdf,
-            target: Target::Infinity,
-            light,
-            uv,
-        })
+        let Sample { value: uv, pdf } = self.sample_image(u)?;
+        let (wi, pdf) = direction(&self.world_from_light, uv, pdf);
+        (pdf > 0.0).then_some(LightSample { wi, pdf, target: Target::Infinity, light, uv })
+    }
+
+    /// A point of the image, in proportion to luminance. `None` from a black image.
+    #[inline(always)]
+    pub(super) fn sample_image(&self, u: Vec2) -> Option<Sample<Plane>> {
+        self.table.as_ref()?.sample(u)
+    }
+
+    /// The image's axes, for [`direction`].
+    pub(super) fn world_from_light(&self) -> Mat3 {
+        self.world_from_light
     }
 
     /// The density of `sample` at a direction in world space, in sr⁻¹.
     pub fn pdf(&self, wi: Vec3) -> f32 {
         let local = self.light_from_world * wi;
+        self.pdf_of(local, uv_of(local))
+    }
+
+    fn pdf_of(&self, local: Vec3, uv: Vec2) -> f32 {
         let sin_theta = (local.x * local.x + local.z * local.z).sqrt();
         match &self.table {
-            Some(table) if sin_theta > 0.0 => per_solid_angle(table.pdf(uv_of(local)), sin_theta),
+            Some(table) if sin_theta > 0.0 => per_solid_angle(table.pdf(uv), sin_theta),
             _ => 0.0,
         }
     }
 }
 
+/// The direction of a point of the image, in world space, and the density in sr⁻¹ that becomes of one in the image: 0 at
+/// the poles, where there is none. Does not branch.
+#[inline(always)]
+pub(super) fn direction(world_from_light: &Mat3, uv: Vec2, pdf_uv: f32) -> (Vec3, f32) {
+    let (theta, phi) = (unit_circle(0.5 * uv.y), unit_circle(uv.x));
+    let local = Vec3::new(theta.y * phi.y, theta.x, -theta.y * phi.x);
+    let pdf = per_solid_angle(pdf_uv, theta.y);
+    let counts = (theta.y > 0.0) & (pdf < f32::INFINITY);
+    (*world_from_light * local, if counts { pdf } else { 0.0 })
+}
+
 /// dω = 2π² sin θ du dv.
-#[inline]
+#[inline(always)]
 fn per_solid_angle(pdf_uv: f32, sin_theta: f32) -> f32 {
     pdf_uv / (TAU * PI * sin_theta)
 }

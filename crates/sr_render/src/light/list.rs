@@ -151,12 +151,25 @@ impl Lights {
         Some((LightId(index as u32), pmf, rest))
     }
 
-    /// A piece of a light that shines alike everywhere; `None` for other lights.
+    /// A piece of a light that shines alike everywhere, or of the image around the scene; `None` for other lights.
     #[inline(always)]
-    pub(super) fn piece(&self, id: LightId, u_pick: f32) -> Option<Piece> {
+    pub(super) fn piece(&self, id: LightId, u_pick: f32, u: Vec2) -> Option<Piece> {
         match &self.extended[id.0 as usize] {
             Extended::Area(area) => area.piece(u_pick),
+            Extended::Environment(sky) if self.environments.len() == 1 => sky.sample_image(u).map(Piece::Sky),
             Extended::Constant(_) | Extended::Environment(_) => None,
+        }
+    }
+
+    /// The image around the scene, if there is one and no other light is around it.
+    #[inline(always)]
+    pub(super) fn sky(&self) -> Option<&Environment> {
+        match &self.environments[..] {
+            &[LightId(id)] => match &self.extended[id as usize] {
+                Extended::Environment(sky) => Some(sky),
+                Extended::Area(_) | Extended::Constant(_) => None,
+            },
+            _ => None,
         }
     }
 
@@ -240,7 +253,7 @@ impl Lights {
         for &id in &self.environments {
             let (radiance, pdf) = match &self.extended[id.0 as usize] {
                 Extended::Constant(constant) => (constant.radiance, constant.pdf()),
-                Extended::Environment(environment) => (environment.radiance(wi), environment.pdf(wi)),
+                Extended::Environment(environment) => environment.seen_along(wi),
                 Extended::Area(_) => continue,
             };
             sum += radiance * weight(self.pmf(id) * pdf);
