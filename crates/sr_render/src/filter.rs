@@ -64,27 +64,57 @@ impl PixelFilter {
     }
 
     /// The offset below which a sample lies with probability `u`.
-    #[inline]
     pub fn icdf(&self, u: f32) -> f32 {
-        let t = match &self.shape {
-            Shape::Box => 2.0 * u - 1.0,
-            Shape::Tent if u < 0.5 => (2.0 * u).sqrt() - 1.0,
-            Shape::Tent => 1.0 - (2.0 * (1.0 - u)).max(0.0).sqrt(),
-            Shape::Table(cdf) => {
-                let i = cdf.partition_point(|&c| c <= u).clamp(1, CELLS) - 1;
-                let width = cdf[i + 1] - cdf[i];
-                let within = if width > 0.0 { ((u - cdf[i]) / width).clamp(0.0, 1.0) } else { 0.5 };
-                2.0 * (i as f32 + within) / CELLS as f32 - 1.0
+        let mut offset = [u];
+        self.place(&mut offset);
+        offset[0]
+    }
+
+    /// [`PixelFilter::icdf`] of each of many probabilities, in their place.
+    #[inline(always)]
+    pub fn place(&self, u: &mut [f32]) {
+        match &self.shape {
+            Shape::Box => {
+                for u in u {
+                    *u = (2.0 * *u - 1.0) * self.radius;
+                }
             }
-        };
-        t * self.radius
+            Shape::Tent => {
+                for u in u {
+                    *u = tent_icdf(*u) * self.radius;
+                }
+            }
+            Shape::Table(cdf) => {
+                for u in u {
+                    *u = table_icdf(cdf, *u) * self.radius;
+                }
+            }
+        }
     }
 
     /// The part of [0, 1) whose offsets stay within the film, for a pixel at `index` of `count`.
+    #[inline]
     pub fn inside(&self, index: u32, count: u32) -> (f32, f32) {
-        let centre = index as f32 + 0.5;
-        (self.cdf(-centre), self.cdf(count as f32 - centre))
+        let (below, above) = (index as f32 + 0.5, (count - index) as f32 - 0.5);
+        let is_amid = below >= self.radius && above >= self.radius;
+        if is_amid { (0.0, 1.0) } else { (self.cdf(-below), self.cdf(above)) }
     }
+}
+
+/// Of a tent over [−1, 1]. Does not branch.
+#[inline(always)]
+fn tent_icdf(u: f32) -> f32 {
+    let (left, right) = ((2.0 * u).sqrt() - 1.0, 1.0 - (2.0 * (1.0 - u)).max(0.0).sqrt());
+    if u < 0.5 { left } else { right }
+}
+
+/// Of a tabulated CDF over [−1, 1].
+#[inline]
+fn table_icdf(cdf: &[f32], u: f32) -> f32 {
+    let i = cdf.partition_point(|&c| c <= u).clamp(1, CELLS) - 1;
+    let width = cdf[i + 1] - cdf[i];
+    let within = if width > 0.0 { ((u - cdf[i]) / width).clamp(0.0, 1.0) } else { 0.5 };
+    2.0 * (i as f32 + within) / CELLS as f32 - 1.0
 }
 
 #[cfg(test)]

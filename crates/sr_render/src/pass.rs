@@ -70,28 +70,30 @@ impl<'a, I: Integrator, Q: Sequence> Sampler<'a, I, Q> {
     /// Makes the camera rays of samples `start .. start + per_pixel` of `pixels`.
     #[inline(always)]
     fn camera_rays(&self, rays: &mut CameraRays<Q>, pixels: Range<u32>, start: u32, per_pixel: u32) {
-        let mut film = Vec2s::splat(Vec2::ZERO);
+        let zero = Vec2s::splat(Vec2::ZERO);
+        let (mut film, mut centre, mut low, mut span) = (zero.clone(), zero.clone(), zero.clone(), zero);
         let mut i = 0;
         for pixel in pixels {
+            let window = self.window(pixel);
             for sample in start..start + per_pixel {
                 rays.pixel[i] = pixel;
                 rays.index[i] = sample / REPLICATES as u32;
                 rays.sequence[i] = self.sequences[sample as usize % REPLICATES];
+                centre.set(i, window.centre);
+                low.set(i, window.low);
+                span.set(i, window.span);
                 i += 1;
             }
         }
         rays.count = i;
         let count = i.min(BATCH);
         for i in 0..count {
-            film.set(i, rays.cursor(i).next_2d());
+            film.set(i, low.get(i) + rays.cursor(i).next_2d() * span.get(i));
         }
-        let mut i = 0;
-        while i < count {
-            let window = self.window(rays.pixel[i]);
-            for _ in 0..per_pixel {
-                film.set(i, window.place(&self.filter, film.get(i)));
-                i += 1;
-            }
+        self.filter.place(&mut film.x[..count]);
+        self.filter.place(&mut film.y[..count]);
+        for i in 0..count {
+            film.set(i, centre.get(i) + film.get(i));
         }
         let size = Vec2::new(self.width as f32, self.height as f32);
         if self.camera.has_lens() {
@@ -216,14 +218,6 @@ struct FilterWindow {
     centre: Vec2,
     low: Vec2,
     span: Vec2,
-}
-
-impl FilterWindow {
-    #[inline]
-    fn place(&self, filter: &PixelFilter, u: Vec2) -> Vec2 {
-        let u = self.low + u * self.span;
-        self.centre + Vec2::new(filter.icdf(u.x), filter.icdf(u.y))
-    }
 }
 
 #[cfg(test)]
