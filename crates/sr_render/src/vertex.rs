@@ -35,12 +35,12 @@ impl Frame {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn to_local(self, w: Vec3) -> Vec3 {
         Vec3::new(w.dot(self.s), w.dot(self.t), w.dot(self.n))
     }
 
-    #[inline]
+    #[inline(always)]
     fn to_world(self, w: Vec3) -> Vec3 {
         self.s * w.x + self.t * w.y + self.n * w.z
     }
@@ -60,19 +60,15 @@ impl Sight {
     /// Of a hit, seen along `ray`, and the side of the material that is seen.
     #[inline(always)]
     pub fn new<'a>(scene: &'a Scene, ray: &Ray, hit: &Hit, surface: &Surface) -> (Self, &'a Side) {
-        let material = scene.materials.get(scene.material_of(hit.shape));
+        let (materials, material) = (&scene.materials, scene.material_of(hit.shape));
         let wo = -ray.direction;
         let mut normal = surface.ns;
-        if let Some(bump) = material.front.bump {
+        if let Some(bump) = materials.side(materials.face(material, false).side).bump {
             normal = tilted(scene, hit, surface, bump);
         }
-        let mut side = &material.front;
-        if let Some(back) = &material.back
-            && wo.dot(normal) < 0.0
-        {
-            (side, normal) = (back, -normal);
-        }
-        let frame = if side.is_anisotropic() {
+        let face = materials.face(material, wo.dot(normal) < 0.0);
+        let (side, normal) = (materials.side(face.side), normal * face.turn);
+        let frame = if side.is_anisotropic {
             Frame::along(normal, scene.geometry.tangents(surface, hit).dpdu)
         } else {
             Frame::about(normal)
@@ -88,6 +84,44 @@ impl Sight {
     pub fn towards_viewer(n: Vec3, wo: Vec3) -> Self {
         let frame = Frame::about(n);
         Self { wo: frame.to_local(wo), frame, untilted: None }
+    }
+
+    /// f · |cos θ| and the density with which `bsdf` samples `wi`, a direction in world space.
+    #[inline(always)]
+    pub fn eval<B: Bsdf>(&self, bsdf: &B, wi: Vec3) -> (Rgb, f32) {
+        if !self.is_consistent(wi) {
+            return (Rgb::ZERO, 0.0);
+        }
+        let local = self.frame.to_local(wi);
+        (bsdf.eval(self.wo, local) * local.z.abs(), bsdf.pdf(self.wo, local))
+    }
+
+    /// f · |cos θ| for a direction in world space.
+    #[inline(always)]
+    pub fn f_cos<B: Bsdf>(&self, bsdf: &B, wi: Vec3) -> Rgb {
+        if !self.is_consistent(wi) {
+            return Rgb::ZERO;
+        }
+        let local = self.frame.to_local(wi);
+        bsdf.eval(self.wo, local) * local.z.abs()
+    }
+
+    /// A direction in world space, as `bsdf` samples it.
+    #[inline(always)]
+    pub fn sample<B: Bsdf>(&self, bsdf: &B, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
+        let mut s = bsdf.sample(self.wo, u_lobe, u)?;
+        s.wi = self.frame.to_world(s.wi);
+        (s.delta || self.is_consistent(s.wi)).then_some(s)
+    }
+
+    #[inline(always)]
+    fn is_consistent(&self, wi: Vec3) -> bool {
+        self.untilted.is_none_or(|ns| ns.dot(wi) * self.frame.n.dot(wi) * self.facing(ns) > 0.0)
+    }
+
+    /// +1 if the frame's normal is on the side of `ns`, −1 if it was turned to the back.
+    fn facing(&self, ns: Vec3) -> f32 {
+        ns.dot(self.frame.n).signum()
     }
 }
 
@@ -110,32 +144,22 @@ impl<B: Bsdf> Vertex<'_, B> {
         self.sight.frame.n
     }
 
-    /// f · |cos θ| and the density with which the BSDF samples `wi`, a direction in world space.
+    /// [`Sight::eval`].
     #[inline(always)]
     pub fn eval(&self, wi: Vec3) -> (Rgb, f32) {
-        if !self.is_consistent(wi) {
-            return (Rgb::ZERO, 0.0);
-        }
-        let local = self.sight.frame.to_local(wi);
-        (self.bsdf.eval(self.sight.wo, local) * local.z.abs(), self.bsdf.pdf(self.sight.wo, local))
+        self.sight.eval(self.bsdf, wi)
     }
 
-    /// f · |cos θ| for a direction in world space.
+    /// [`Sight::f_cos`].
     #[inline(always)]
     pub fn f_cos(&self, wi: Vec3) -> Rgb {
-        if !self.is_consistent(wi) {
-            return Rgb::ZERO;
-        }
-        let local = self.sight.frame.to_local(wi);
-        self.bsdf.eval(self.sight.wo, local) * local.z.abs()
+        self.sight.f_cos(self.bsdf, wi)
     }
 
-    /// A direction in world space, as the BSDF samples it.
+    /// [`Sight::sample`].
     #[inline(always)]
     pub fn sample(&self, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
-        let mut s = self.bsdf.sample(self.sight.wo, u_lobe, u)?;
-        s.wi = self.sight.frame.to_world(s.wi);
-        (s.delta || self.is_consistent(s.wi)).then_some(s)
+        self.sight.sample(self.bsdf, u_lobe, u)
     }
 
     /// The cosine of a world-space direction with the shading normal.
@@ -148,16 +172,6 @@ impl<B: Bsdf> Vertex<'_, B> {
     #[inline]
     pub fn world_from_local(&self, local: Vec3) -> Vec3 {
         self.sight.frame.to_world(local)
-    }
-
-    #[inline]
-    fn is_consistent(&self, wi: Vec3) -> bool {
-        self.sight.untilted.is_none_or(|ns| ns.dot(wi) * self.sight.frame.n.dot(wi) * self.facing(ns) > 0.0)
-    }
-
-    /// +1 if the frame's normal is on the side of `ns`, −1 if it was turned to the back.
-    fn facing(&self, ns: Vec3) -> f32 {
-        ns.dot(self.sight.frame.n).signum()
     }
 }
 

@@ -1,12 +1,12 @@
 //! Paths come to surfaces: what shines there is added, and the scattering models are found.
 
-use sr_geometry::{BATCH, Hit};
+use sr_geometry::{BATCH, Hit, ShapeId};
 use sr_sampling::{Sequence, power_weight};
-use sr_scene::{ColorInput, Rgb};
+use sr_scene::Rgb;
 
 use super::super::PathSample;
 use super::Step;
-use super::state::{Paths, Vertices};
+use super::state::{List, Paths, Vertices};
 use crate::scene::Scene;
 
 /// Ends the paths whose rays hit nothing, and adds the environment's light to them.
@@ -75,7 +75,8 @@ fn emitted<Q: Sequence>(scene: &Scene, paths: &Paths<Q>, at: &Vertices, i: usize
     le * power_weight(pdf, scene.lights.pdf_of_point(light, paths.from.get(i), &surface))
 }
 
-/// Finds the scattering models: Lambertian ones with their albedo and normal, the others by number.
+/// Finds out which side of which material is seen, and lets vertices wait for the loops that serve them. Lambertian
+/// ones get their albedos.
 #[inline(always)]
 pub(super) fn find_models<Q: Sequence>(scene: &Scene, paths: &Paths<Q>, at: &mut Vertices) {
     let count = paths.count.min(BATCH);
@@ -83,25 +84,24 @@ pub(super) fn find_models<Q: Sequence>(scene: &Scene, paths: &Paths<Q>, at: &mut
     for i in 0..count {
         facing[i] = -at.surfaces.ns.get(i).dot(paths.rays.direction.get(i));
     }
-    let mut turn = [1.0; BATCH];
-    at.others.clear();
+    let (mut turn, mut pictures) = ([1.0; BATCH], List::EMPTY);
+    at.queues.clear();
     for i in 0..count {
-        let hit = at.hits.at(i);
-        let seen = scene.materials.get(scene.material_of(hit.shape)).lambert(facing[i] < 0.0);
-        if let Some((reflectance, turned)) = seen {
-            let albedo = match reflectance {
-                ColorInput::Constant(albedo) => albedo,
-                textured => {
-                    let uv = scene.geometry.uv(&paths.rays.get(i), &hit);
-                    scene.textures.color(textured, uv)
-                }
-            };
-            at.albedo.set(i, albedo);
-            turn[i] = if turned { -1.0 } else { 1.0 };
-        }
-        at.others.push_if(seen.is_none(), i);
+        let material = scene.material_of(ShapeId(at.hits.shape[i]));
+        let face = scene.materials.face(material, facing[i] < 0.0);
+        at.queues.push(i, &face);
+        at.albedo.set(i, face.albedo);
+        turn[i] = face.turn;
+        pictures.push_if(face.has_picture, i);
     }
+    at.queues.sort(count, scene.materials.queue_count());
     for i in 0..count {
         at.normal.set(i, at.surfaces.ns.get(i) * turn[i]);
+    }
+    for k in 0..pictures.len().min(BATCH) {
+        let i = pictures.get(k);
+        let side = scene.materials.side(at.queues.side(i));
+        let uv = scene.geometry.uv(&paths.rays.get(i), &at.hits.at(i));
+        at.albedo.set(i, side.reflectance(uv, &scene.textures));
     }
 }

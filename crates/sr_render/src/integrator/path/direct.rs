@@ -56,7 +56,10 @@ pub(super) fn connect<Q: Sequence>(
     }
     if scene.lights.has_deltas() {
         for i in 0..count {
-            shadow.arriving.set(i, paths.beta.get(i) * to_delta.f_cos.get(i) * deltas.radiance.get(i));
+            let radiance = deltas.radiance.get(i);
+            let arriving = paths.beta.get(i) * to_delta.f_cos.get(i) * radiance;
+            // Chosen, as above.
+            shadow.arriving.set(i, Vec3::select(BVec3::splat(radiance != Rgb::ZERO), arriving, Rgb::ZERO));
         }
         shadow.keep_visible(scene, surfaces, (&deltas.wi, &deltas.target, &deltas.is_far), count);
         for i in shadow.list.iter() {

@@ -10,8 +10,10 @@
 //! Reading order: this file, `state`, then the steps in the order of a vertex: `arrive`, `direct`, `scatter`, `go_on`.
 
 mod arrive;
+mod bin;
 mod direct;
 mod go_on;
+mod queues;
 mod scatter;
 mod state;
 

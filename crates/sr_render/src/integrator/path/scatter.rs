@@ -1,14 +1,18 @@
 //! Scattering models are asked: how much of a light they pass on, and where the path goes on.
 
-use sr_bsdf::{AnyModel, Bsdf, Diffuse, Mask};
+use std::ops::Range;
+
+use glam::Vec2;
+use sr_bsdf::Diffuse;
 use sr_geometry::BATCH;
 use sr_sampling::Sequence;
 use sr_scene::Rgb;
 
 use super::super::{FirstHit, PathSample};
-use super::state::{Paths, Scattered, Towards, Vertices};
+use super::bin::Serve;
+use super::state::{Paths, Vertices};
 use super::{Step, dimension};
-use crate::material::BsdfUser;
+use crate::material::Queue;
 use crate::scene::Scene;
 use crate::vertex::{Sight, Vertex};
 
@@ -36,28 +40,24 @@ pub(super) fn scatter<Q: Sequence>(
         if scene.lights.has_deltas() {
             for i in 0..count {
                 let sight = Sight::towards_viewer(at.normal.get(i), -paths.rays.direction.get(i));
-                let (bsdf, surface) = (Diffuse::new(at.albedo.get(i)), at.surfaces.get(i, glam::Vec2::ZERO));
-                let vertex = Vertex { surface: &surface, sight: &sight, bsdf: &bsdf };
-                at.to_delta.f_cos.set(i, vertex.f_cos(at.deltas.wi.get(i)));
+                let bsdf = Diffuse::new(at.albedo.get(i));
+                at.to_delta.f_cos.set(i, sight.f_cos(&bsdf, at.deltas.wi.get(i)));
             }
         }
     }
-    for k in 0..at.others.len() {
-        let i = at.others.get(k);
-        let hit = at.hits.at(i);
-        let ray = paths.rays.get(i);
-        let surface = at.surfaces.get(i, scene.geometry.uv(&ray, &hit));
-        let (sight, side) = Sight::new(scene, &ray, &hit, &surface);
-        let visit = Visit {
-            has_deltas: scene.lights.has_deltas(),
-            step,
-            paths,
-            i,
-            vertex: (&surface, &sight),
-            at,
-            samples,
-        };
-        scene.materials.with_bsdf(side, surface.uv, &scene.textures, visit);
+    let single = at.queues.range(Queue::SINGLE);
+    if single.end < count {
+        if !step.last {
+            paths.uniforms_1d(step.dimension + dimension::LOBE, &mut at.u_lobe);
+        }
+        for queue in (0..scene.materials.queue_count() as u32).map(Queue) {
+            if let Some(kind) = queue.kind() {
+                serve(scene, step, paths, at, samples, (kind, at.queues.range(queue)));
+            }
+        }
+    }
+    for k in single {
+        visit(scene, step, paths, at, samples, at.queues.get(k));
     }
 }
 
@@ -65,86 +65,88 @@ pub(super) fn scatter<Q: Sequence>(
 #[inline(always)]
 fn lambert<Q: Sequence>(paths: &Paths<Q>, at: &mut Vertices, i: usize) {
     let sight = Sight::towards_viewer(at.normal.get(i), -paths.rays.direction.get(i));
-    let (bsdf, surface) = (Diffuse::new(at.albedo.get(i)), at.surfaces.get(i, glam::Vec2::ZERO));
-    let vertex = Vertex { surface: &surface, sight: &sight, bsdf: &bsdf };
-    at.to_light.set(i, vertex.eval(at.lights.wi.get(i)));
-    at.scattered.set(i, vertex.sample(0.0, at.scattered.u.get(i)));
+    let bsdf = Diffuse::new(at.albedo.get(i));
+    at.to_light.set(i, sight.eval(&bsdf, at.lights.wi.get(i)));
+    at.scattered.set(i, sight.sample(&bsdf, 0.0, at.scattered.u.get(i)));
 }
 
-/// What is done at a vertex of any other model.
-struct Visit<'a, Q> {
-    has_deltas: bool,
-    step: &'a Step,
-    paths: &'a Paths<Q>,
-    i: usize,
-    vertex: (&'a sr_geometry::Surface, &'a Sight),
-    at: &'a mut Vertices,
-    samples: &'a mut [PathSample; BATCH],
-}
-
-impl<'m, Q: Sequence> BsdfUser<'m> for Visit<'_, Q> {
-    type Out = ();
-
-    #[inline(always)]
-    fn call<B: Bsdf + Into<AnyModel<'m>>>(self, bsdf: B) {
-        self.visit(&bsdf);
+/// The vertices of one kind.
+#[inline(always)]
+fn serve<Q: Sequence>(
+    scene: &Scene,
+    step: &Step,
+    paths: &Paths<Q>,
+    at: &mut Vertices,
+    samples: &mut [PathSample; BATCH],
+    (kind, range): (u32, Range<usize>),
+) {
+    let has_deltas = scene.lights.has_deltas() && !step.last;
+    let (bin, queues, first) = (&mut at.bin, &at.queues, range.start);
+    bin.count = range.len().min(BATCH);
+    if bin.count == 0 {
+        return;
     }
-
-    #[inline(never)]
-    fn call_masked<B: Bsdf + Into<AnyModel<'m>>>(self, bsdf: Mask<B>) {
-        self.visit(&bsdf);
-    }
-}
-
-impl<Q: Sequence> Visit<'_, Q> {
-    #[inline(always)]
-    fn visit<B: Bsdf>(self, bsdf: &B) {
-        let Self { has_deltas, step, paths, i, vertex: (surface, sight), at, samples } = self;
-        let vertex = Vertex { surface, sight, bsdf };
-        if step.first {
-            let first = FirstHit::new(&vertex, at.hits.t[i]);
-            samples[paths.slot[i] as usize % BATCH].first = Some(first);
+    for k in 0..bin.count {
+        let i = queues.get(first + k);
+        let side = scene.materials.side(queues.side(i));
+        let mut uv = Vec2::ZERO;
+        if side.is_textured {
+            uv = scene.geometry.uv(&paths.rays.get(i), &at.hits.at(i));
         }
-        if step.last {
-            return;
-        }
-        let nothing = (Rgb::ZERO, 0.0);
-        let smooth = vertex.lobes().smooth();
-        let is_lit = smooth && at.lights.pdf[i] > 0.0;
-        at.to_light.set(i, if is_lit { vertex.eval(at.lights.wi.get(i)) } else { nothing });
+        bin.set_inputs(k, &side.inputs(uv, &scene.textures));
+        bin.normal.set(k, at.normal.get(i));
+        bin.wo.set(k, -paths.rays.direction.get(i));
+        bin.light.set(k, at.lights.wi.get(i));
+        bin.u_lobe[k] = at.u_lobe[i];
+        bin.u.set(k, at.scattered.u.get(i));
         if has_deltas {
-            let f_cos = if smooth { vertex.f_cos(at.deltas.wi.get(i)) } else { Rgb::ZERO };
-            at.to_delta.f_cos.set(i, f_cos);
+            bin.delta.set(k, at.deltas.wi.get(i));
         }
-        let u_lobe = paths.cursor(i, step.dimension + dimension::LOBE).next_1d();
-        at.scattered.set(i, vertex.sample(u_lobe, at.scattered.u.get(i)));
+    }
+    scene.materials.with_recipe(kind, Serve { bin, step, has_deltas });
+    for k in 0..bin.count {
+        let i = queues.get(first + k);
+        if step.first {
+            let (albedo, normal, depth) = (bin.albedo.get(k), bin.normal.get(k), at.hits.t[i]);
+            samples[paths.slot[i] as usize % BATCH].first = Some(FirstHit { albedo, normal, depth });
+        }
+        at.to_light.set(i, (bin.to_light.f_cos.get(k), bin.to_light.pdf[k]));
+        if has_deltas {
+            at.to_delta.f_cos.set(i, bin.to_delta.get(k));
+        }
+        at.scattered.copy(i, &bin.scattered, k);
     }
 }
 
-impl Towards {
-    #[inline(always)]
-    fn set(&mut self, i: usize, (f_cos, pdf): (Rgb, f32)) {
-        self.f_cos.set(i, f_cos);
-        self.pdf[i] = pdf;
+/// A vertex that no loop serves.
+#[inline(never)]
+fn visit<Q: Sequence>(
+    scene: &Scene,
+    step: &Step,
+    paths: &Paths<Q>,
+    at: &mut Vertices,
+    samples: &mut [PathSample; BATCH],
+    i: usize,
+) {
+    let (hit, ray) = (at.hits.at(i), paths.rays.get(i));
+    let surface = at.surfaces.get(i, scene.geometry.uv(&ray, &hit));
+    let (sight, side) = Sight::new(scene, &ray, &hit, &surface);
+    let bsdf = scene.materials.bsdf(side, surface.uv, &scene.textures);
+    let vertex = Vertex { surface: &surface, sight: &sight, bsdf: &bsdf };
+    if step.first {
+        samples[paths.slot[i] as usize % BATCH].first = Some(FirstHit::new(&vertex, hit.t));
     }
-}
-
-impl Scattered {
-    #[inline(always)]
-    fn set(&mut self, i: usize, sample: Option<sr_bsdf::BsdfSample>) {
-        match sample {
-            Some(s) => {
-                self.wi.set(i, s.wi);
-                self.weight.set(i, s.weight);
-                self.pdf[i] = if s.delta { f32::INFINITY } else { s.pdf };
-                self.eta[i] = s.eta;
-            }
-            None => {
-                self.wi.set(i, glam::Vec3::Z);
-                self.weight.set(i, Rgb::ZERO);
-                self.pdf[i] = 0.0;
-                self.eta[i] = 1.0;
-            }
-        }
+    if step.last {
+        return;
     }
+    let nothing = (Rgb::ZERO, 0.0);
+    let smooth = vertex.lobes().smooth();
+    let is_lit = smooth && at.lights.pdf[i] > 0.0;
+    at.to_light.set(i, if is_lit { vertex.eval(at.lights.wi.get(i)) } else { nothing });
+    if scene.lights.has_deltas() {
+        let f_cos = if smooth { vertex.f_cos(at.deltas.wi.get(i)) } else { Rgb::ZERO };
+        at.to_delta.f_cos.set(i, f_cos);
+    }
+    let u_lobe = paths.cursor(i, step.dimension + dimension::LOBE).next_1d();
+    at.scattered.set(i, vertex.sample(u_lobe, at.scattered.u.get(i)));
 }

@@ -1,11 +1,14 @@
 //! What is known of the paths of a batch: of each path, and of the vertex at which it is.
 
 use glam::{Vec2, Vec3};
+use sr_bsdf::BsdfSample;
 use sr_geometry::{BATCH, Hits, Rays, Surfaces, Vec2s, Vec3s};
 use sr_sampling::{Cursor, SampleId, Sequence};
 use sr_scene::Rgb;
 
 use super::super::CameraRays;
+use super::bin::Bin;
+use super::queues::Queues;
 use crate::light::{DeltaSamples, LightSamples};
 
 /// Paths on their way. They lie close together; one that ends makes room for the last one.
@@ -101,16 +104,21 @@ impl<Q: Sequence> Paths<Q> {
 pub(super) struct Vertices {
     pub hits: Hits,
     pub surfaces: Surfaces,
-    /// Lambertian surfaces: normals, turned to the viewer where a surface has two sides, and albedos.
+    /// Shading normals, turned to the viewer where a surface has two sides.
     pub normal: Vec3s,
+    /// Albedos of Lambertian surfaces.
     pub albedo: Vec3s,
-    /// Those whose scattering model is another one.
-    pub others: List,
+    /// Which loop serves which vertex.
+    pub queues: Queues,
+    /// Those of one kind, side by side.
+    pub bin: Bin,
     /// Samples of the lights with an extent, and of those without.
     pub lights: LightSamples,
     pub deltas: DeltaSamples,
     pub to_light: Towards,
     pub to_delta: Towards,
+    /// Uniforms for the choice among lobes.
+    pub u_lobe: [f32; BATCH],
     pub shadow: Shadow,
     pub scattered: Scattered,
 }
@@ -121,11 +129,13 @@ impl Vertices {
         surfaces: Surfaces::NONE,
         normal: Vec3s::splat(Vec3::Z),
         albedo: Vec3s::splat(Rgb::ZERO),
-        others: List::EMPTY,
+        queues: Queues::EMPTY,
+        bin: Bin::NONE,
         lights: LightSamples::NONE,
         deltas: DeltaSamples::NONE,
         to_light: Towards::NONE,
         to_delta: Towards::NONE,
+        u_lobe: [0.0; BATCH],
         shadow: Shadow::NONE,
         scattered: Scattered::NONE,
     };
@@ -140,7 +150,14 @@ pub(super) struct Towards {
 }
 
 impl Towards {
-    const NONE: Self = Self { f_cos: Vec3s::splat(Rgb::ZERO), pdf: [0.0; BATCH] };
+    pub const NONE: Self = Self { f_cos: Vec3s::splat(Rgb::ZERO), pdf: [0.0; BATCH] };
+
+    /// Replaces one of them.
+    #[inline(always)]
+    pub fn set(&mut self, i: usize, (f_cos, pdf): (Rgb, f32)) {
+        self.f_cos.set(i, f_cos);
+        self.pdf[i] = pdf;
+    }
 }
 
 /// Light on its way to vertices, and the rays that find out whether it arrives.
@@ -176,13 +193,40 @@ pub(super) struct Scattered {
 }
 
 impl Scattered {
-    const NONE: Self = Self {
+    pub const NONE: Self = Self {
         wi: Vec3s::splat(Vec3::Z),
         weight: Vec3s::splat(Rgb::ZERO),
         pdf: [0.0; BATCH],
         eta: [1.0; BATCH],
         u: Vec2s::splat(Vec2::ZERO),
     };
+
+    /// Replaces one of them.
+    #[inline(always)]
+    pub fn set(&mut self, i: usize, sample: Option<BsdfSample>) {
+        match sample {
+            Some(s) => {
+                self.wi.set(i, s.wi);
+                self.weight.set(i, s.weight);
+                self.pdf[i] = if s.delta { f32::INFINITY } else { s.pdf };
+                self.eta[i] = s.eta;
+            }
+            None => {
+                self.wi.set(i, Vec3::Z);
+                self.weight.set(i, Rgb::ZERO);
+                self.pdf[i] = 0.0;
+                self.eta[i] = 1.0;
+            }
+        }
+    }
+
+    /// Replaces one of them by one of others.
+    #[inline(always)]
+    pub fn copy(&mut self, i: usize, from: &Self, k: usize) {
+        self.wi.set(i, from.wi.get(k));
+        self.weight.set(i, from.weight.get(k));
+        (self.pdf[i], self.eta[i]) = (from.pdf[k], from.eta[k]);
+    }
 }
 
 /// Some of the paths of a batch.

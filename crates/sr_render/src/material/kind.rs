@@ -1,0 +1,294 @@
+//! Kinds of scattering model, and how a model of each kind is made from its inputs.
+//!
+//! In: [`Inputs`], the colours and numbers at a point. Out: a model, of the type that it is. Whoever serves many points
+//! of one kind chooses once, [`Materials::with_recipe`], and then makes their models in a loop.
+
+use sr_bsdf::{
+    AnyModel, Beckmann, Bsdf, Conductor, Dielectric, Diffuse, Ggx, Microfacet, MicrofacetKind,
+    MicrofacetShape, Plastic, Rgb, RoughConductor, RoughDielectric, RoughPlastic, RoughPlasticTables,
+    SmoothCoat, ThinDielectric,
+};
+
+use super::Materials;
+
+/// What tells models apart besides their inputs. The comments name the inputs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Kind {
+    /// Reflectance.
+    Diffuse,
+    /// Reflectance and transmittance; η.
+    Dielectric,
+    /// Reflectance and transmittance; η.
+    ThinDielectric,
+    /// Reflectance and transmittance; α along x and y, η.
+    RoughDielectric { shape: MicrofacetKind },
+    /// Reflectance, η and k.
+    Conductor { has_index: bool },
+    /// Reflectance, η and k; α along x and y.
+    RoughConductor { shape: MicrofacetKind, has_index: bool },
+    /// Reflectance of the base and of the coating.
+    Plastic { coat: SmoothCoat, nonlinear: bool },
+    /// Reflectance of the base and of the coating.
+    RoughPlastic { coat: u32, nonlinear: bool },
+}
+
+/// The most colours that a model takes.
+pub(crate) const COLORS: usize = 3;
+/// The most numbers that a model takes.
+pub(crate) const SCALARS: usize = 3;
+
+/// What a model is made from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Inputs {
+    pub colors: [Rgb; COLORS],
+    pub scalars: [f32; SCALARS],
+    /// How much of the surface is there: no part of the model.
+    pub opacity: f32,
+}
+
+/// Makes models of one kind.
+pub(crate) trait Recipe<'a>: Copy {
+    /// What all models of the kind look things up in.
+    type Tables: 'a;
+    type Model<'t>: Bsdf + Into<AnyModel<'t>>;
+
+    fn tables(self) -> &'a Self::Tables;
+
+    /// Tables for a loop, which writes elsewhere: [`RoughPlasticTables::rebuilt`].
+    fn own_tables(self) -> Self::Tables;
+
+    fn model<'t>(self, inputs: &Inputs, tables: &'t Self::Tables) -> Self::Model<'t>;
+}
+
+/// What is done with a recipe of whatever type: compiled once for each.
+pub(crate) trait RecipeUser<'a> {
+    type Out;
+    fn call<R: Recipe<'a>>(self, recipe: R) -> Self::Out;
+}
+
+impl Materials {
+    /// Calls `user` with the recipe of a kind.
+    #[inline(always)]
+    pub(crate) fn with_recipe<'a, U: RecipeUser<'a>>(&'a self, kind: u32, user: U) -> U::Out {
+        use MicrofacetKind::{Beckmann as IsBeckmann, Ggx as IsGgx};
+        match self.kinds[kind as usize] {
+            Kind::Diffuse => user.call(MakeDiffuse),
+            Kind::Dielectric => user.call(MakeDielectric),
+            Kind::ThinDielectric => user.call(MakeThinDielectric),
+            Kind::RoughDielectric { shape: IsBeckmann } => user.call(MakeRoughDielectric(Beckmann)),
+            Kind::RoughDielectric { shape: IsGgx } => user.call(MakeRoughDielectric(Ggx)),
+            Kind::Conductor { has_index: false } => user.call(MakeConductor::<false>),
+            Kind::Conductor { has_index: true } => user.call(MakeConductor::<true>),
+            Kind::RoughConductor { shape: IsBeckmann, has_index: false } => {
+                user.call(MakeRoughConductor::<_, false>(Beckmann))
+            }
+            Kind::RoughConductor { shape: IsBeckmann, has_index: true } => {
+                user.call(MakeRoughConductor::<_, true>(Beckmann))
+            }
+            Kind::RoughConductor { shape: IsGgx, has_index: false } => {
+                user.call(MakeRoughConductor::<_, false>(Ggx))
+            }
+            Kind::RoughConductor { shape: IsGgx, has_index: true } => {
+                user.call(MakeRoughConductor::<_, true>(Ggx))
+            }
+            Kind::Plastic { coat, nonlinear } => user.call(MakePlastic { coat, nonlinear }),
+            Kind::RoughPlastic { coat, nonlinear } => {
+                let coat = &self.coats[coat as usize];
+                match coat.distribution().kind() {
+                    IsBeckmann => user.call(MakeRoughPlastic { shape: Beckmann, coat, nonlinear }),
+                    IsGgx => user.call(MakeRoughPlastic { shape: Ggx, coat, nonlinear }),
+                }
+            }
+        }
+    }
+}
+
+#[derive(Clone, Copy)]
+struct MakeDiffuse;
+
+impl<'a> Recipe<'a> for MakeDiffuse {
+    type Tables = ();
+    type Model<'t> = Diffuse;
+
+    #[inline(always)]
+    fn tables(self) -> &'a () {
+        &()
+    }
+
+    #[inline(always)]
+    fn own_tables(self) {}
+
+    #[inline(always)]
+    fn model(self, Inputs { colors, .. }: &Inputs, (): &()) -> Diffuse {
+        Diffuse::new(colors[0])
+    }
+}
+
+#[derive(Clone, Copy)]
+struct MakeDielectric;
+
+impl<'a> Recipe<'a> for MakeDielectric {
+    type Tables = ();
+    type Model<'t> = Dielectric;
+
+    #[inline(always)]
+    fn tables(self) -> &'a () {
+        &()
+    }
+
+    #[inline(always)]
+    fn own_tables(self) {}
+
+    #[inline(always)]
+    fn model(self, Inputs { colors, scalars, .. }: &Inputs, (): &()) -> Dielectric {
+        Dielectric::new(scalars[0], colors[0], colors[1])
+    }
+}
+
+#[derive(Clone, Copy)]
+struct MakeThinDielectric;
+
+impl<'a> Recipe<'a> for MakeThinDielectric {
+    type Tables = ();
+    type Model<'t> = ThinDielectric;
+
+    #[inline(always)]
+    fn tables(self) -> &'a () {
+        &()
+    }
+
+    #[inline(always)]
+    fn own_tables(self) {}
+
+    #[inline(always)]
+    fn model(self, Inputs { colors, scalars, .. }: &Inputs, (): &()) -> ThinDielectric {
+        ThinDielectric::new(scalars[0], colors[0], colors[1])
+    }
+}
+
+#[derive(Clone, Copy)]
+struct MakeRoughDielectric<S>(S);
+
+impl<'a, S: MicrofacetShape> Recipe<'a> for MakeRoughDielectric<S> {
+    type Tables = ();
+    type Model<'t> = RoughDielectric<S>;
+
+    #[inline(always)]
+    fn tables(self) -> &'a () {
+        &()
+    }
+
+    #[inline(always)]
+    fn own_tables(self) {}
+
+    #[inline(always)]
+    fn model(self, Inputs { colors, scalars, .. }: &Inputs, (): &()) -> RoughDielectric<S> {
+        let distribution = Microfacet::new(self.0, scalars[0], scalars[1]);
+        RoughDielectric::new(distribution, scalars[2], colors[0], colors[1])
+    }
+}
+
+#[derive(Clone, Copy)]
+struct MakeConductor<const HAS_INDEX: bool>;
+
+/// η and k, if the metal has them.
+#[inline(always)]
+fn index<const HAS_INDEX: bool>(colors: &[Rgb; COLORS]) -> Option<(Rgb, Rgb)> {
+    if HAS_INDEX { Some((colors[1], colors[2])) } else { None }
+}
+
+impl<'a, const HAS_INDEX: bool> Recipe<'a> for MakeConductor<HAS_INDEX> {
+    type Tables = ();
+    type Model<'t> = Conductor;
+
+    #[inline(always)]
+    fn tables(self) -> &'a () {
+        &()
+    }
+
+    #[inline(always)]
+    fn own_tables(self) {}
+
+    #[inline(always)]
+    fn model(self, Inputs { colors, .. }: &Inputs, (): &()) -> Conductor {
+        Conductor::new(index::<HAS_INDEX>(colors), colors[0])
+    }
+}
+
+#[derive(Clone, Copy)]
+struct MakeRoughConductor<S, const HAS_INDEX: bool>(S);
+
+impl<'a, S: MicrofacetShape, const HAS_INDEX: bool> Recipe<'a> for MakeRoughConductor<S, HAS_INDEX> {
+    type Tables = ();
+    type Model<'t> = RoughConductor<S>;
+
+    #[inline(always)]
+    fn tables(self) -> &'a () {
+        &()
+    }
+
+    #[inline(always)]
+    fn own_tables(self) {}
+
+    #[inline(always)]
+    fn model(self, Inputs { colors, scalars, .. }: &Inputs, (): &()) -> RoughConductor<S> {
+        let distribution = Microfacet::new(self.0, scalars[0], scalars[1]);
+        RoughConductor::new(distribution, index::<HAS_INDEX>(colors), colors[0])
+    }
+}
+
+#[derive(Clone, Copy)]
+struct MakePlastic {
+    coat: SmoothCoat,
+    nonlinear: bool,
+}
+
+impl<'a> Recipe<'a> for MakePlastic {
+    type Tables = ();
+    type Model<'t> = Plastic;
+
+    #[inline(always)]
+    fn tables(self) -> &'a () {
+        &()
+    }
+
+    #[inline(always)]
+    fn own_tables(self) {}
+
+    #[inline(always)]
+    fn model(self, Inputs { colors, .. }: &Inputs, (): &()) -> Plastic {
+        Plastic::new(self.coat, colors[0], colors[1], self.nonlinear)
+    }
+}
+
+#[derive(Clone, Copy)]
+struct MakeRoughPlastic<'a, S> {
+    shape: S,
+    coat: &'a RoughPlasticTables,
+    nonlinear: bool,
+}
+
+impl<'a, S: MicrofacetShape> Recipe<'a> for MakeRoughPlastic<'a, S> {
+    type Tables = RoughPlasticTables;
+    type Model<'t> = RoughPlastic<'t, S>;
+
+    #[inline(always)]
+    fn tables(self) -> &'a RoughPlasticTables {
+        self.coat
+    }
+
+    #[inline(always)]
+    fn own_tables(self) -> RoughPlasticTables {
+        self.coat.rebuilt()
+    }
+
+    #[inline(always)]
+    fn model<'t>(
+        self,
+        Inputs { colors, .. }: &Inputs,
+        tables: &'t RoughPlasticTables,
+    ) -> RoughPlastic<'t, S> {
+        let distribution = Microfacet::isotropic(self.shape, tables.distribution().alpha().x);
+        RoughPlastic::of_distribution(distribution, tables, colors[0], colors[1], self.nonlinear)
+    }
+}

@@ -1,0 +1,153 @@
+//! Compiled materials: a description's tree, flattened to one or two sides, each a kind of model with its inputs.
+//!
+//! In: descriptions. Out, per hit: the side that is seen, and an [`AnyBsdf`] by value, its textures looked up; or, for
+//! whoever serves many hits at a time, the queue of each, and what `kind` makes of those in it. No ray, no light.
+
+mod flatten;
+mod kind;
+
+use glam::Vec2;
+use sr_bsdf::{AnyBsdf, AnyModel, Mask, RoughPlasticTables};
+use sr_scene::{ColorInput, MaterialId, Rgb, ScalarInput, TextureId};
+
+use crate::texture::Textures;
+pub use flatten::MaterialError;
+use kind::Kind;
+pub(crate) use kind::{COLORS, Inputs, Recipe, RecipeUser, SCALARS};
+
+/// All materials of a scene.
+#[derive(Clone, Debug)]
+pub struct Materials {
+    /// Per material: what it is seen from the front, and from behind.
+    faces: Vec<[Face; 2]>,
+    sides: Vec<Side>,
+    kinds: Vec<Kind>,
+    coats: Vec<RoughPlasticTables>,
+}
+
+/// A material as it is seen from the front or from behind: what is asked of every hit.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Face {
+    pub side: u32,
+    pub queue: Queue,
+    /// −1 if the normal is turned to the viewer, else 1.
+    pub turn: f32,
+    /// The reflectance of a side of [`Queue::LAMBERT`], unless a texture has it.
+    pub albedo: Rgb,
+    /// Has a texture the reflectance of a side of [`Queue::LAMBERT`]?
+    pub has_picture: bool,
+}
+
+/// One side of a surface.
+#[derive(Clone, Debug)]
+pub(crate) struct Side {
+    kind: u32,
+    colors: [ColorInput; COLORS],
+    scalars: [ScalarInput; SCALARS],
+    opacity: ScalarInput,
+    /// All of them, if none is textured.
+    constant: Inputs,
+    pub bump: Option<Bump>,
+    /// Does a colour or number depend on texture coordinates?
+    pub is_textured: bool,
+    /// Does the model tell the tangent from the bitangent?
+    pub is_anisotropic: bool,
+}
+
+/// A tilt of the shading normal.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bump {
+    /// Displacement in scene units per unit of texture value.
+    pub scale: f32,
+    pub texture: TextureId,
+}
+
+/// Which loop serves a side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Queue(pub u32);
+
+impl Queue {
+    /// Lambertian, without holes or bumps.
+    pub const LAMBERT: Self = Self(0);
+    /// One by one: bumps, tangents that matter, and kinds beyond [`Queue::COUNT`].
+    pub const SINGLE: Self = Self(1);
+    /// How many there are at most; those above the first two are a kind each.
+    pub const COUNT: usize = 64;
+
+    /// That of a kind.
+    fn of_kind(kind: u32) -> Self {
+        if kind as usize + 2 < Self::COUNT { Self(kind + 2) } else { Self::SINGLE }
+    }
+
+    /// The kind that it serves, if that is one.
+    pub fn kind(self) -> Option<u32> {
+        self.0.checked_sub(2)
+    }
+}
+
+impl Materials {
+    /// What is seen of a material from the front, or from behind.
+    #[inline(always)]
+    pub(crate) fn face(&self, MaterialId(material): MaterialId, from_behind: bool) -> Face {
+        self.faces[material as usize][usize::from(from_behind)]
+    }
+
+    /// A side, by the number in its [`Face`].
+    #[inline(always)]
+    pub(crate) fn side(&self, side: u32) -> &Side {
+        &self.sides[side as usize]
+    }
+
+    /// How many queues there are.
+    pub(crate) fn queue_count(&self) -> usize {
+        (self.kinds.len() + 2).min(Queue::COUNT)
+    }
+
+    /// The scattering model of one side at a surface coordinate.
+    #[inline]
+    pub(crate) fn bsdf(&self, side: &Side, uv: Vec2, textures: &Textures) -> AnyBsdf<'_> {
+        let inputs = side.inputs(uv, textures);
+        let model = self.with_recipe(side.kind, MakeAny { inputs });
+        match inputs.opacity {
+            1.0 => AnyBsdf::Solid(model),
+            opacity => AnyBsdf::Masked(Mask::new(opacity, model)),
+        }
+    }
+}
+
+/// Makes a model, by value.
+struct MakeAny {
+    inputs: Inputs,
+}
+
+impl<'a> RecipeUser<'a> for MakeAny {
+    type Out = AnyModel<'a>;
+
+    #[inline(always)]
+    fn call<R: Recipe<'a>>(self, recipe: R) -> AnyModel<'a> {
+        recipe.model(&self.inputs, recipe.tables()).into()
+    }
+}
+
+impl Side {
+    /// The colours and numbers of the model at a surface coordinate. Those that it does not take are 0.
+    #[inline(always)]
+    pub(crate) fn inputs(&self, uv: Vec2, textures: &Textures) -> Inputs {
+        if self.is_textured { self.look_up(uv, textures) } else { self.constant }
+    }
+
+    #[inline(never)]
+    fn look_up(&self, uv: Vec2, textures: &Textures) -> Inputs {
+        Inputs {
+            colors: self.colors.map(|color| textures.color(color, uv)),
+            scalars: self.scalars.map(|scalar| textures.scalar(scalar, uv)),
+            opacity: textures.scalar(self.opacity, uv),
+        }
+    }
+
+    /// The reflectance of a side of [`Queue::LAMBERT`].
+    #[inline(always)]
+    pub(crate) fn reflectance(&self, uv: Vec2, textures: &Textures) -> Rgb {
+        textures.color(self.colors[0], uv)
+    }
+}
