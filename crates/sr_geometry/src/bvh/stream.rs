@@ -90,12 +90,16 @@ pub(super) fn walk_many<S: Walk, const ANY: bool>(
                 continue;
             }
             if child == NodeRef::BACK {
-                at.go_back(simd, &rays.get(ray), bounds);
+                at.go_back(&rays.get(ray));
             } else {
                 at.visit_other(simd, bvh, child.index() as u32, meet_other);
                 at.forget_beyond(simd);
             }
-            lists.put(walker, at.next_of_many(simd, bvh));
+            let next = at.next_after_other(simd, bounds);
+            if bvh.prefetches {
+                bvh.prefetch(simd, next);
+            }
+            lists.put(walker, next);
         }
     }
 }

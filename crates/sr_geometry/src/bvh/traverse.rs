@@ -38,8 +38,8 @@ pub(super) fn walk<S: Walk, const ANY: bool>(
     let sheared = Sheared::new(ray.origin, ray.direction);
     let line = Line::new(ray.origin, ray.direction, ray.t_max, bounds);
     let walker = Walker::start(&mut walker, simd, root, (ray, &sheared, &line));
-    loop {
-        let child = walker.next();
+    let mut child = walker.next();
+    while child != NodeRef::DONE {
         match child.kind() {
             kind::NODE => {
                 let depth = walker.stack.depth();
@@ -50,10 +50,16 @@ pub(super) fn walk<S: Walk, const ANY: bool>(
             }
             kind::NARROW => walker.visit_leaf::<true, true>(simd, &bvh.leaves.leaf(child)),
             kind::FULL => walker.visit_leaf::<false, true>(simd, &bvh.leaves.leaf(child)),
-            _ if child == NodeRef::DONE => break,
-            _ if child == NodeRef::BACK => walker.go_back(simd, ray, bounds),
-            _ => walker.visit_other(simd, bvh, child.index() as u32, &meet_other),
+            _ => {
+                match child {
+                    NodeRef::BACK => walker.go_back(ray),
+                    _ => walker.visit_other(simd, bvh, child.index() as u32, &meet_other),
+                }
+                child = walker.next_after_other(simd, bounds);
+                continue;
+            }
         }
+        child = walker.next();
     }
     let hit = walker.hit(bvh);
     *closest = hit.unwrap_or(*closest);

@@ -4,6 +4,7 @@ use std::hint::select_unpredictable;
 use std::mem::MaybeUninit;
 
 use super::leaves::Leaf;
+use super::node::kind;
 use super::scan::scan;
 use super::sheared::{Meets, Sheared};
 use super::simd::{Eight, Lanes, Walk};
@@ -24,6 +25,8 @@ pub(super) struct Walker<S: Walk, const ANY: bool> {
     slabs: S::Slabs,
     /// The instance by which it came there.
     instance: u32,
+    /// Did it come back from there, and is not ready yet to meet what is here?
+    is_back: bool,
     pub stack: Stack,
     met: bool,
     /// The closest hit so far, or the end of the ray.
@@ -54,6 +57,7 @@ impl<S: Walk, const ANY: bool> Walker<S, ANY> {
             (&raw mut (*walker).sheared).write(*sheared);
             (&raw mut (*walker).slabs).write(simd.slabs(line));
             (&raw mut (*walker).instance).write(NO_INSTANCE);
+            (&raw mut (*walker).is_back).write(false);
             (&raw mut (*walker).met).write(false);
             (&raw mut (*walker).t).write(ray.t_max);
             (&raw mut (*walker).b1).write(0.0);
@@ -173,17 +177,28 @@ impl<S: Walk, const ANY: bool> Walker<S, ANY> {
         }
     }
 
-    /// Goes back to where the ray, which is given again, came from: a tree within `bounds`.
+    /// Goes back to where the ray, which is given again, came from.
     #[inline(always)]
-    pub fn go_back(&mut self, simd: S, ray: &Ray, bounds: &Bounds3) {
-        self.move_to(simd, &Ray { t_max: self.t, ..*ray }, bounds, NO_INSTANCE);
+    pub fn go_back(&mut self, ray: &Ray) {
+        (self.ray, self.instance, self.is_back) = (*ray, NO_INSTANCE, true);
+    }
+
+    /// What is to be visited after a primitive that is not a triangle. A ray that is back within `bounds` is made ready
+    /// only if it will meet a node or a leaf there.
+    #[inline(always)]
+    pub fn next_after_other(&mut self, simd: S, bounds: &Bounds3) -> NodeRef {
+        let next = self.next();
+        if self.is_back && next.kind() != kind::OTHER {
+            self.move_to(simd, &Ray { t_max: self.t, ..self.ray }, bounds, NO_INSTANCE);
+        }
+        next
     }
 
     #[inline(always)]
     fn move_to(&mut self, simd: S, ray: &Ray, bounds: &Bounds3, instance: u32) {
         self.sheared = Sheared::new(ray.origin, ray.direction);
         self.slabs = simd.slabs(&Line::new(ray.origin, ray.direction, ray.t_max, bounds));
-        (self.ray, self.instance) = (*ray, instance);
+        (self.ray, self.instance, self.is_back) = (*ray, instance, false);
     }
 
     /// What was hit.
