@@ -102,7 +102,7 @@ impl<S: MicrofacetShape> Bsdf for RoughPlastic<'_, S> {
         let (f, pdf) = self.eval_pdf(wo, wi, m, p, t_o);
         let weight = f * (wi.z / pdf);
         let is_above = (wo.z > 0.0) & (wi.z > 0.0);
-        (is_above & (pdf > f32::MIN_POSITIVE) & (weight.max_element() > 0.0)).then_some(BsdfSample {
+        (is_above & (pdf > f32::MIN_POSITIVE) & (weight != Rgb::ZERO)).then_some(BsdfSample {
             wi,
             weight,
             pdf,

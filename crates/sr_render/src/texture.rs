@@ -145,7 +145,8 @@ impl Textures {
                     Filter::Bilinear => {
                         let at = at - 0.5;
                         let (x, y) = (to_cell(at.x), to_cell(at.y));
-                        let t = at - Vec2::new(x as f32, y as f32);
+                        // Within the cell also where the cell was kept away from the ends.
+                        let t = (at - Vec2::new(x as f32, y as f32)).clamp(Vec2::ZERO, Vec2::ONE);
                         bilinear(image, *srgb, [column(x), column(x + 1)], [row(y), row(y + 1)], t)
                     }
                 }
@@ -248,6 +249,15 @@ mod tests {
         assert_eq!(at(&t, 0.75, 0.75), 3.0);
         assert!((at(&t, 0.5, 0.5) - 1.5).abs() < 1e-6);
         assert_eq!(at(&t, -9.0, 0.25), 0.0);
+    }
+
+    #[test]
+    fn bilinear_stays_between_texels_at_any_coordinate() {
+        let t = textures(Wrap::Repeat, Filter::Bilinear, Affine2::IDENTITY);
+        for far in [1e6, 1e9, 3e9, -7e12, f32::MAX, f32::NEG_INFINITY, f32::NAN] {
+            let value = at(&t, far, 0.3);
+            assert!((0.0..=3.0).contains(&value), "{value} at {far}");
+        }
     }
 
     #[test]

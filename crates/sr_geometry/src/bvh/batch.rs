@@ -1,7 +1,7 @@
 //! Meeting a tree with many rays: the instruction set is chosen once for all of them.
 //!
-//! Small trees are met by packets, and ray by ray where a packet is in doubt; others ray by ray, or, where they are
-//! large, by several rays in turn.
+//! Small trees are met by packets, and ray by ray where a packet is in doubt; others that have nodes by several rays in
+//! turn, and those without ray by ray.
 
 use super::dispatch::meet;
 
@@ -86,7 +86,7 @@ impl<F: Fn(u32, &Ray) -> Met> Batch<'_, F> {
         self.tree.pieces.map(|pieces| &self.bvh.pieces[pieces as usize])
     }
 
-    /// Meets the tree ray by ray, or in a large tree with several rays in turn; `answer(i, hit)` gets what ray i hits.
+    /// Meets the tree with several rays in turn, or ray by ray if it has no nodes; `answer(i, hit)` gets what ray i hits.
     #[inline(always)]
     fn meet<S: Walk, const ANY: bool>(&self, simd: S, mut answer: impl FnMut(usize, Option<&Hit>)) {
         let Self { bvh, tree, rays, count, ref meet_other } = *self;

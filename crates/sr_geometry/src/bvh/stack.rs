@@ -6,7 +6,7 @@ use super::simd::Walk;
 use super::{MAX_DEPTH, NodeRef, WIDTH};
 
 /// [`NodeRef::DONE`] and [`NodeRef::BACK`], what every node on the way to a leaf leaves, in a tree and in one that is
-/// placed in it, and what is written at a time.
+/// placed in it (in which none is placed), and what is written at a time.
 const CAPACITY: usize = 2 + 2 * (WIDTH - 1) * MAX_DEPTH + 2 * WIDTH;
 
 /// Children that wait for their turn, the next one last, and where the ray enters them. The first is [`NodeRef::DONE`].
@@ -99,7 +99,8 @@ impl Stack {
         let (mut kept, mut first) = (0, 0);
         while first < self.depth {
             let within = (1_u32 << (self.depth - first).min(WIDTH)) - 1;
-            // SAFETY: `kept` is not beyond `first`, which is below `depth`, and that leaves room for WIDTH more.
+            // SAFETY: those below `depth` were written; `kept` is not beyond `first`, which is below `depth`, and that
+            // leaves room for WIDTH more.
             kept += unsafe { simd.forget_beyond(t_max, within, self.at(first), self.at(kept)) } as usize;
             first += WIDTH;
         }

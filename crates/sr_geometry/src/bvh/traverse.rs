@@ -1,6 +1,6 @@
 //! Walking a tree with a ray, about front to back.
 //!
-//! In: a ray and the root of a tree of more triangles than [`super::scan`] takes. Out: the closest hit, or whether there
+//! In: a ray and the root of a tree that has nodes. Out: the closest hit, or whether there
 //! is any.
 
 use std::mem::MaybeUninit;

@@ -157,6 +157,7 @@ impl<S: Walk, const ANY: bool> Walker<S, ANY> {
             Met::Placed { ray, .. } if meets_nothing(&ray) => return,
             Met::Placed { tree, ray, instance } => match tree.form {
                 Form::Nodes(root) => {
+                    debug_assert_eq!(self.instance, NO_INSTANCE, "groups hold no instances");
                     self.stack.push(NodeRef::BACK);
                     self.stack.push(root);
                     return self.move_to(simd, &ray, &tree.bounds, instance);
@@ -169,6 +170,7 @@ impl<S: Walk, const ANY: bool> Walker<S, ANY> {
             },
         };
         let Some(hit) = hit else { return };
+        debug_assert!(hit.t > 0.0 && hit.t < self.t);
         (self.met, self.t, self.place, self.other) = (true, hit.t, NOWHERE, Hit { instance, ..hit });
         if ANY {
             self.stack.clear_if(true);

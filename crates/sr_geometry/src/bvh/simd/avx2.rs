@@ -231,9 +231,11 @@ impl Walk for Avx2 {
     }
     #[inline(always)]
     unsafe fn forget_beyond(self, t_max: f32, within: u32, from: [*mut u32; 2], to: [*mut u32; 2]) -> u32 {
-        // All is valid, by the caller's promise.
+        // What is read was written, and there is room for what is written, by the caller's promise.
         avx2!({
-            let (children, enters) = (_mm256_loadu_si256(from[0].cast()), _mm256_loadu_ps(from[1].cast()));
+            let mask = _mm256_castps_si256(self.mask(within));
+            let children = _mm256_maskload_epi32(from[0].cast(), mask);
+            let enters = _mm256_maskload_ps(from[1].cast(), mask);
             let near = _mm256_cmp_ps::<_CMP_LE_OQ>(enters, _mm256_set1_ps(t_max));
             let kept = _mm256_movemask_ps(near) as u32 & within;
             let order = self.compress(kept);

@@ -257,9 +257,10 @@ impl Walk for Avx512 {
     }
     #[inline(always)]
     unsafe fn forget_beyond(self, t_max: f32, within: u32, from: [*mut u32; 2], to: [*mut u32; 2]) -> u32 {
-        // All is valid, by the caller's promise.
+        // What is read was written, and there is room for what is written, by the caller's promise.
         avx512!({
-            let (children, enters) = (_mm256_loadu_si256(from[0].cast()), _mm256_loadu_ps(from[1].cast()));
+            let children = _mm256_maskz_loadu_epi32(within as u8, from[0].cast());
+            let enters = _mm256_maskz_loadu_ps(within as u8, from[1].cast());
             let kept = _mm256_mask_cmp_ps_mask::<_CMP_LE_OQ>(within as u8, enters, _mm256_set1_ps(t_max));
             _mm256_storeu_si256(to[0].cast(), _mm256_maskz_compress_epi32(kept, children));
             _mm256_storeu_ps(to[1].cast(), _mm256_maskz_compress_ps(kept, enters));

@@ -87,10 +87,11 @@ pub(super) trait Walk: Lanes {
     /// Pushes the children of a node that the ray meets, in the order of their slots, the nearest last.
     fn enter(self, slabs: &Self::Slabs, node: &Node, stack: &mut Stack);
     /// Copies those of the eight children at `from` that are `within`, bit by bit, and entered not beyond `t_max`, to
-    /// `to`; returns their number. More may be overwritten, up to eight.
+    /// `to`; returns their number. Up to eight are overwritten there.
     ///
     /// # Safety
-    /// All is valid.
+    /// Both are places of eight children, and of eight numbers that tell where they are entered. At `from` those that are
+    /// `within`, the lowest bits, were written; `to` is not beyond `from`, or does not overlap it.
     unsafe fn forget_beyond(self, t_max: f32, within: u32, from: [*mut u32; 2], to: [*mut u32; 2]) -> u32;
     /// A leaf's triangles, up to [`super::NARROW`], as a ray sees them.
     fn project_narrow(self, sheared: &Sheared, leaf: &Leaf<'_>) -> Projected<Self::Eight>;

@@ -166,12 +166,12 @@ impl Walk for Portable {
     #[inline(always)]
     unsafe fn forget_beyond(self, t_max: f32, within: u32, from: [*mut u32; 2], to: [*mut u32; 2]) -> u32 {
         let mut kept = 0;
-        for i in 0..WIDTH {
-            // SAFETY: all is valid, by the caller's promise.
+        for i in 0..within.trailing_ones() as usize {
+            // SAFETY: by the caller's promise these were written, and there is room for as many.
             unsafe {
                 let (child, enter) = (*from[0].add(i), *from[1].add(i));
                 (*to[0].add(kept), *to[1].add(kept)) = (child, enter);
-                kept += usize::from(within >> i & 1 != 0 && f32::from_bits(enter) <= t_max);
+                kept += usize::from(f32::from_bits(enter) <= t_max);
             }
         }
         kept as u32
