@@ -12,7 +12,7 @@ from pathlib import Path
 BENCHES = Path(__file__).resolve().parent
 sys.path[:0] = [str(BENCHES), str(BENCHES.parent)]
 
-from beside import arguments, environment  # noqa: E402
+from beside import arguments, environment  # noqa: E402 (after its folder is on the path)
 
 
 def main() -> int:

@@ -9,20 +9,17 @@ import stat
 import sys
 from pathlib import Path
 
+import instructions
 import numpy as np
 import pytest
 
 import steradian as sr
+from beside import arguments, llvm, meshes, plain, report, table
+from beside.paired import Bar, geometric_mean, ratio, slope
+from beside.renderers import ALL, Job, pbrt
+from beside.studies import NAMES, rays, study
 
 ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT / "benches"))
-
-import instructions  # noqa: E402
-
-from beside import arguments, llvm, meshes, plain, report, table  # noqa: E402
-from beside.paired import Bar, geometric_mean, ratio, slope  # noqa: E402
-from beside.renderers import ALL, Job, pbrt  # noqa: E402
-from beside.studies import NAMES, rays, study  # noqa: E402
 
 
 def test_ratio_is_the_median_over_pairs() -> None:
