@@ -170,7 +170,7 @@ impl<S: Walk, const ANY: bool> Walker<S, ANY> {
             },
         };
         let Some(hit) = hit else { return };
-        debug_assert!(hit.t > 0.0 && hit.t < self.t);
+        debug_assert!(ANY || (hit.t > 0.0 && hit.t < self.t), "an any hit need not say where it is");
         (self.met, self.t, self.place, self.other) = (true, hit.t, NOWHERE, Hit { instance, ..hit });
         if ANY {
             self.stack.clear_if(true);
