@@ -1,0 +1,89 @@
+//! The one abstraction, at run time: a probability density that can be sampled and evaluated.
+
+use std::error::Error;
+use std::fmt;
+
+use thiserror::Error;
+
+use crate::columns::{Columns, ColumnsMut};
+use crate::space::Space;
+
+/// A density that could not do what it was asked for.
+#[derive(Debug, Error)]
+pub enum DensityError {
+    /// A density that somebody else wrote failed; the error is theirs.
+    #[error(transparent)]
+    Foreign(Box<dyn Error + Send + Sync>),
+}
+
+/// A probability density over points of any number of coordinates, in double precision.
+///
+/// As with [`sr_sampling::Distribution`], uniforms are passed in, never drawn, and the density may integrate to less
+/// than one: the rest is the probability that `sample` gives nothing. Blocks come in and go out, a column for each
+/// coordinate. Densities are shared between threads, and are never changed.
+pub trait Density: Send + Sync + fmt::Debug {
+    /// What the density is a density of.
+    fn space(&self) -> Space;
+
+    /// How many uniforms in [0, 1) a sample consumes.
+    fn uniforms(&self) -> usize;
+
+    /// Draws a point from each row of `u`.
+    ///
+    /// - `u`: [`Density::uniforms`] columns of uniforms in [0, 1)
+    /// - `x`: the points; as many columns as the space has coordinates
+    /// - `pdf`: the density at each; 0 where nothing is drawn, which contributes nothing. Never NaN; the point
+    ///   may then be anything, also NaN
+    ///
+    /// # Errors
+    /// Only those of densities that somebody else wrote.
+    fn sample(&self, u: Columns<'_>, x: ColumnsMut<'_>, pdf: &mut [f64]) -> Result<(), DensityError>;
+
+    /// The density at each point of `x`; 0 outside the support, also at infinity and at NaN.
+    ///
+    /// # Errors
+    /// Only those of densities that somebody else wrote.
+    fn pdf(&self, x: Columns<'_>, pdf: &mut [f64]) -> Result<(), DensityError>;
+
+    /// The least box that holds the support, as (low, high) for each coordinate; infinite where it has no end.
+    fn support(&self) -> Vec<[f64; 2]>;
+
+    /// The box that an integrand over this density is expected to live on, if the density may be 0 within it:
+    /// the range of a histogram, whose bins may be empty. An integral looks there for what the density misses.
+    fn domain(&self) -> Option<Vec<[f64; 2]>> {
+        None
+    }
+
+    /// The expected point, if it is known and exists.
+    fn mean(&self) -> Option<Vec<f64>> {
+        None
+    }
+
+    /// `sample` run backwards, if that is possible.
+    fn inverse(&self) -> Option<&dyn Inverse> {
+        None
+    }
+
+    /// The distribution function, if the points are real numbers (or indices) and it is known.
+    fn cumulative(&self) -> Option<&dyn Cumulative> {
+        None
+    }
+}
+
+/// A density whose `sample` can be run backwards.
+pub trait Inverse {
+    /// The uniforms that `sample` maps to each point; NaN outside the support.
+    ///
+    /// # Errors
+    /// As [`Density::pdf`].
+    fn invert(&self, x: Columns<'_>, u: ColumnsMut<'_>) -> Result<(), DensityError>;
+}
+
+/// The distribution function of a density on the line, and its inverse.
+pub trait Cumulative {
+    /// The probability of a value of at most `x`.
+    fn cdf(&self, x: f64) -> f64;
+
+    /// The value below which a share `u` in [0, 1] of the probability lies.
+    fn icdf(&self, u: f64) -> f64;
+}
