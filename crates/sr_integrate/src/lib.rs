@@ -10,8 +10,10 @@
 
 pub mod columns;
 pub mod density;
+pub mod points;
 pub mod space;
 
 pub use columns::{Columns, ColumnsMut};
 pub use density::{Cumulative, Density, DensityError, Inverse};
+pub use points::{Points, Sequence, UnknownSequence};
 pub use space::Space;

@@ -1,4 +1,4 @@
-//! Integer hashing, and integers to uniforms.
+//! Integer hashing, scrambling, and integers to uniforms: what every sequence is made of.
 
 /// 2⁶⁴ divided by the golden ratio, made odd: the step that spreads consecutive integers farthest.
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
@@ -33,6 +33,20 @@ pub fn to_unit(bits: u32) -> f32 {
     (bits >> 8) as f32 * STEP
 }
 
+/// An Owen scramble of a number whose *lowest* bit is the most significant: each bit is flipped by a
+/// random function of the bits below it.
+///
+/// The construction is Laine & Karras' (2011), with the steps and constants of Nathan Vegdahl,
+/// "Building a Better LK Hash" (2021). Even multipliers keep every step a bijection.
+#[inline]
+pub fn scramble_low_first(mut x: u32, seed: u32) -> u32 {
+    x ^= x.wrapping_mul(0x3d20_adea);
+    x = x.wrapping_add(seed);
+    x = x.wrapping_mul((seed >> 16) | 1);
+    x ^= x.wrapping_mul(0x0552_6c56);
+    x ^ x.wrapping_mul(0x53a2_2864)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -65,5 +79,17 @@ mod tests {
             }
         }
         assert!(worst < 6.0, "{worst} standard deviations");
+    }
+
+    #[test]
+    fn a_scrambled_bit_depends_on_lower_bits_only() {
+        for trial in 0..1000_u32 {
+            let (x, seed) = (mix64(u64::from(trial)) as u32, mix64(!u64::from(trial)) as u32);
+            let scrambled = scramble_low_first(x, seed);
+            for bit in 0..32 {
+                let change = scrambled ^ scramble_low_first(x ^ 1 << bit, seed);
+                assert_eq!(change.trailing_zeros(), bit, "bit {bit} of {x:#x}, seed {seed:#x}");
+            }
+        }
     }
 }

@@ -9,7 +9,7 @@
 mod cursor;
 mod independent;
 mod kind;
-mod mix;
+pub mod mix;
 mod owen_sobol;
 
 use glam::Vec2;
