@@ -10,10 +10,12 @@
 
 pub mod columns;
 pub mod density;
+pub mod integrate;
 pub mod points;
 pub mod space;
 
 pub use columns::{Columns, ColumnsMut};
 pub use density::{Cumulative, Density, DensityError, Inverse};
+pub use integrate::{Integral, IntegrateError, Plan, integrate};
 pub use points::{Points, Sequence, UnknownSequence};
 pub use space::Space;

@@ -5,6 +5,8 @@ use std::str::FromStr;
 
 use thiserror::Error;
 
+use crate::measure::Real;
+
 /// A weight for one sample each of n techniques (Veach 1997, §9.2). For any point that some technique
 /// can draw, the weights sum to 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -25,32 +27,33 @@ impl Heuristic {
     pub const ALL: [Self; 4] = [Self::Balance, Self::Power, Self::Cutoff, Self::Maximum];
 
     /// Veach's α: a technique less likely than α times the likeliest counts for nothing in `Cutoff`.
-    pub const CUTOFF_ALPHA: f32 = 0.1;
+    pub const CUTOFF_ALPHA: f64 = 0.1;
 
     /// The weight of a sample that was drawn with density `p_this`.
     ///
     /// - `all`: the densities of every technique at the sample, `p_this` among them
     /// - returns: in [0, 1]; 0 if `p_this` is 0. Techniques that tie share.
     #[inline]
-    pub fn weight(self, p_this: f32, all: &[f32]) -> f32 {
+    pub fn weight<R: Real>(self, p_this: R, all: &[R]) -> R {
         // `!(… > 0)`, so that NaN gets no weight either.
-        let likeliest = all.iter().copied().fold(0.0, f32::max);
-        if !(p_this > 0.0 && likeliest > 0.0) {
-            return 0.0;
+        let likeliest = all.iter().fold(R::ZERO, |most, &p| if p > most { p } else { most });
+        if !(p_this > R::ZERO && likeliest > R::ZERO) {
+            return R::ZERO;
         }
         // Relative to the likeliest: squares do not overflow, and an infinite density takes all.
-        let relative = |p: f32| if p == likeliest { 1.0 } else { p / likeliest };
-        let share = |p: f32| {
+        let relative = |p: R| if p == likeliest { R::ONE } else { p / likeliest };
+        let share = |p: R| {
             let r = relative(p);
             match self {
                 Self::Balance => r,
                 Self::Power => r * r,
-                Self::Cutoff if r < Self::CUTOFF_ALPHA => 0.0,
+                Self::Cutoff if r < R::from_f64(Self::CUTOFF_ALPHA) => R::ZERO,
                 Self::Cutoff => r,
-                Self::Maximum => f32::from(u8::from(r == 1.0)),
+                Self::Maximum if r == R::ONE => R::ONE,
+                Self::Maximum => R::ZERO,
             }
         };
-        share(p_this) / all.iter().map(|&p| share(p)).sum::<f32>()
+        share(p_this) / all.iter().map(|&p| share(p)).sum::<R>()
     }
 
     /// Its name, as in a strategy.

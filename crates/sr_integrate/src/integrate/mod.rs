@@ -1,0 +1,100 @@
+//! Integrals as the mean of f(X) / p(X), with an error that can be believed.
+//!
+//! - [`Technique`]: where points come from, and by what their f is multiplied: [`Single`] (one density), [`Combined`]
+//!   (one of several, multiple importance sampling), [`Resampled`] (resampled importance sampling).
+//! - [`Integrand`]: f, evaluated a block at a time.
+//! - [`Plan`]: which points, and when to stop.
+//! - [`integrate`]: rounds of points until the plan is fulfilled.
+//! - [`Integral`]: mean, covariance and what was noticed on the way.
+//!
+//! Errors come from the samples if these are independent, and otherwise from independent replicates of the points,
+//! never from the naive formula, which overstates (or, for some integrands, understates) them.
+
+mod integral;
+mod integrand;
+mod moments;
+mod plan;
+mod probe;
+mod resampled;
+mod rounds;
+mod technique;
+
+use thiserror::Error;
+
+use crate::density::DensityError;
+
+pub use integral::{ControlError, Integral};
+pub use integrand::{Blocks, Integrand, Parallel};
+pub use plan::{MAX_REPLICATES, Plan, PlanError};
+pub use probe::look_for_holes;
+pub use resampled::{MAX_CANDIDATES, Resampled, Target};
+pub use rounds::{Progress, integrate};
+pub use technique::{Combined, Single, Technique, TechniqueError};
+
+/// Why there is no integral.
+#[derive(Debug, Error)]
+pub enum IntegrateError {
+    /// The plan asks for what cannot be.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// A density failed.
+    #[error(transparent)]
+    Density(#[from] DensityError),
+    /// The integrand failed, or progress was told to stop; the error is its owner's.
+    #[error(transparent)]
+    Foreign(Box<dyn std::error::Error + Send + Sync>),
+    /// The integrand is infinite or not a number at a point.
+    #[error("f returned {value} at x = {}{}", point(x), others(*count, *n))]
+    NotFinite {
+        /// The first such point.
+        x: Vec<f64>,
+        /// What f is there.
+        value: f64,
+        /// How many such points there are among those of the round that was evaluated.
+        count: u64,
+        /// The points of that round.
+        n: u64,
+    },
+    /// The density is 0 where the integrand is not.
+    #[error(
+        "over has density 0 at x = {}, where f is {value}: samples never fall there, and the integral would miss it; \
+         mix in a density that covers the domain",
+        point(x)
+    )]
+    Hole {
+        /// The point.
+        x: Vec<f64>,
+        /// What f is there.
+        value: f64,
+    },
+    /// A value that is finite only before it is divided by the density.
+    #[error("f / p overflows at x = {}: f is {value}, and the density {pdf}", point(x))]
+    Overflow {
+        /// The point.
+        x: Vec<f64>,
+        /// What f is there.
+        value: f64,
+        /// The density there, or what takes its place.
+        pdf: f64,
+    },
+    /// The integrand returned another number of values than before.
+    #[error("f returned {found} values a point, and {expected} before")]
+    Outputs {
+        /// The number of values of earlier blocks.
+        expected: usize,
+        /// Those of this one.
+        found: usize,
+    },
+}
+
+/// A point as people write it: a number, or numbers in brackets.
+pub(crate) fn point(x: &[f64]) -> String {
+    match x {
+        [x] => format!("{x}"),
+        x => format!("[{}]", x.iter().map(f64::to_string).collect::<Vec<_>>().join(", ")),
+    }
+}
+
+fn others(count: u64, n: u64) -> String {
+    if count > 1 { format!(", and at {} others of {n} points", count - 1) } else { String::new() }
+}
