@@ -2,10 +2,12 @@
 
 use std::error::Error;
 use std::fmt;
+use std::sync::Arc;
 
 use thiserror::Error;
 
 use crate::columns::{Columns, ColumnsMut};
+use crate::distributions::ParameterError;
 use crate::space::Space;
 
 /// A density that could not do what it was asked for.
@@ -86,4 +88,21 @@ pub trait Cumulative {
 
     /// The value below which a share `u` in [0, 1] of the probability lies.
     fn icdf(&self, u: f64) -> f64;
+
+    /// The probability of a value above `x`: 1 − cdf(x), with all its digits where that is small.
+    fn above(&self, x: f64) -> f64 {
+        1.0 - self.cdf(x)
+    }
+
+    /// The value above which a share `q` of the probability lies: icdf(1 − q), also for the smallest of q.
+    fn inverse_above(&self, q: f64) -> f64 {
+        self.icdf(1.0 - q)
+    }
+
+    /// This distribution cut to [low, high], if it has a form of its own for that, more exact than differences of
+    /// probabilities. See [`truncate`](crate::distributions::truncate), which always has an answer.
+    fn between(&self, low: f64, high: f64) -> Option<Result<Arc<dyn Density>, ParameterError>> {
+        let _ = (low, high);
+        None
+    }
 }

@@ -10,6 +10,7 @@
 
 pub mod columns;
 pub mod density;
+pub mod distributions;
 pub mod integrate;
 pub mod points;
 pub mod space;

@@ -38,7 +38,9 @@ pub enum ControlError {
         value: f64,
     },
     /// More controls than can be fitted.
-    #[error("{controls} controls need more than {dof} degrees of freedom; use more replicates, or fewer controls")]
+    #[error(
+        "{controls} controls need more than {dof} degrees of freedom; use more replicates, or fewer controls"
+    )]
     TooMany {
         /// How many controls there are.
         controls: usize,
@@ -84,9 +86,8 @@ impl Integral {
         let all = m + k;
         let between = |a: usize, b: usize| self.covariance[a * all + b];
         let controls: Vec<f64> = (0..k * k).map(|i| between(m + i / k, m + i % k)).collect();
-        let beta: Vec<Vec<f64>> = (0..m)
-            .map(|a| solve(controls.clone(), (0..k).map(|c| between(a, m + c)).collect()))
-            .collect();
+        let beta: Vec<Vec<f64>> =
+            (0..m).map(|a| solve(controls.clone(), (0..k).map(|c| between(a, m + c)).collect())).collect();
         let mean = (0..m)
             .map(|a| self.mean[a] - (0..k).map(|c| beta[a][c] * (self.mean[m + c] - known[c])).sum::<f64>())
             .collect();
@@ -110,7 +111,8 @@ fn solve(mut matrix: Vec<f64>, mut right: Vec<f64>) -> Vec<f64> {
     let mut skipped = vec![false; k];
     for i in 0..k {
         for j in 0..=i {
-            let sum: f64 = (0..j).filter(|&l| !skipped[l]).map(|l| matrix[i * k + l] * matrix[j * k + l]).sum();
+            let sum: f64 =
+                (0..j).filter(|&l| !skipped[l]).map(|l| matrix[i * k + l] * matrix[j * k + l]).sum();
             let rest = matrix[i * k + j] - sum;
             if i != j {
                 matrix[i * k + j] = if skipped[j] { 0.0 } else { rest / matrix[j * k + j] };

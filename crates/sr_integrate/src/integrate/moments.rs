@@ -20,7 +20,8 @@ impl Moments {
         let mut products = vec![0.0; m * m];
         for a in 0..m {
             for b in a..m {
-                let sum: f64 = column(a).iter().zip(column(b)).map(|(x, y)| (x - mean[a]) * (y - mean[b])).sum();
+                let sum: f64 =
+                    column(a).iter().zip(column(b)).map(|(x, y)| (x - mean[a]) * (y - mean[b])).sum();
                 (products[a * m + b], products[b * m + a]) = (sum, sum);
             }
         }
@@ -44,7 +45,8 @@ impl Moments {
         for a in 0..m {
             self.mean[a] += difference[a] * share;
             for b in 0..m {
-                self.products[a * m + b] += other.products[a * m + b] + difference[a] * difference[b] * weight;
+                self.products[a * m + b] +=
+                    other.products[a * m + b] + difference[a] * difference[b] * weight;
             }
         }
         self.n = n;

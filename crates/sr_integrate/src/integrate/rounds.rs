@@ -84,7 +84,9 @@ pub fn integrate(
     let limit = if independent { u64::MAX / a_unit } else { Points::MAX_LEN / most_share };
     let target = plan.n.map_or(limit, |n| n.div_ceil(a_unit).min(limit));
     let points: Vec<Points> = (0..techniques.len())
-        .map(|t| Points::new(plan.sequence, techniques[t].0.uniforms(), plan.seed.wrapping_add((t as u64) << 40)))
+        .map(|t| {
+            Points::new(plan.sequence, techniques[t].0.uniforms(), plan.seed.wrapping_add((t as u64) << 40))
+        })
         .collect();
 
     let batch = match integrand {
@@ -95,7 +97,11 @@ pub fn integrate(
     let mut sums = Sums::new(techniques.len(), replicates, independent);
     let (mut done, mut next_look) = (0, Plan::FIRST_LOOK.div_ceil(a_unit).next_power_of_two());
     loop {
-        let len = units_a_round.min(target - done).min(if plan.has_tolerance() { next_look - done } else { u64::MAX });
+        let len = units_a_round.min(target - done).min(if plan.has_tolerance() {
+            next_look - done
+        } else {
+            u64::MAX
+        });
         let tasks = tasks(techniques, replicates, done, len);
         match integrand {
             Integrand::Parallel(f) => {
