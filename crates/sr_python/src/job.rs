@@ -73,7 +73,7 @@ impl<T: Send + 'static> Job<T> {
 }
 
 /// As many threads as the affinity mask and the control group allow, unless a number is given.
-fn thread_count(asked: usize) -> usize {
+pub fn thread_count(asked: usize) -> usize {
     match asked {
         0 => thread::available_parallelism().map_or(1, usize::from).min(MAX_THREADS),
         asked => asked.min(MAX_THREADS),

@@ -4,6 +4,7 @@
 //! as a [`job`], outside the interpreter's lock, so that Python can go on answering signals.
 
 mod image;
+mod integrate;
 mod job;
 mod load;
 mod names;
@@ -33,5 +34,5 @@ fn _internal(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(output::check_format, module)?)?;
     module.add_function(wrap_pyfunction!(output::write_image, module)?)?;
     module.add_function(wrap_pyfunction!(output::encode_png, module)?)?;
-    Ok(())
+    integrate::register(module)
 }

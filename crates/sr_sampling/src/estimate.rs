@@ -34,19 +34,23 @@ impl Estimate {
 impl fmt::Display for Estimate {
     /// The error with two digits, the mean with as many decimals.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { mean, stderr, n } = self;
-        if !(stderr.is_finite() && *stderr > 0.0) {
-            return write!(f, "{mean} ± {stderr} (n = {n})");
-        }
-        // Rounding to two digits may carry: 0.0996 is 0.10, so the digits are counted after it.
-        let rounded: f64 = format!("{stderr:.1e}").parse().unwrap_or(*stderr);
-        let exponent = rounded.log10().floor() as i32;
-        if !(-12..=15).contains(&exponent) {
-            return write!(f, "{mean:e} ± {stderr:.1e} (n = {n})");
-        }
-        let decimals = (1 - exponent).max(0) as usize;
-        write!(f, "{mean:.decimals$} ± {rounded:.decimals$} (n = {n})")
+        write!(f, "{} (n = {})", format_uncertain(self.mean, self.stderr), self.n)
     }
+}
+
+/// `25.0013 ± 0.0046`: the error with two digits, the mean with as many decimals.
+pub fn format_uncertain(mean: f64, stderr: f64) -> String {
+    if !(stderr.is_finite() && stderr > 0.0) {
+        return format!("{mean} ± {stderr}");
+    }
+    // Rounding to two digits may carry: 0.0996 is 0.10, so the digits are counted after it.
+    let rounded: f64 = format!("{stderr:.1e}").parse().unwrap_or(stderr);
+    let exponent = rounded.log10().floor() as i32;
+    if !(-12..=15).contains(&exponent) {
+        return format!("{mean:e} ± {stderr:.1e}");
+    }
+    let decimals = (1 - exponent).max(0) as usize;
+    format!("{mean:.decimals$} ± {rounded:.decimals$}")
 }
 
 /// Mean and variance of a stream of numbers, without storing them and without cancellation.

@@ -15,7 +15,7 @@ pub mod uniforms;
 pub mod warp;
 
 pub use distribution::{Distribution, Invert, PointOf, RealOf, Sample};
-pub use estimate::{Accumulator, Estimate};
+pub use estimate::{Accumulator, Estimate, format_uncertain};
 pub use measure::{Area, Counting, Lebesgue, Line, Measure, Plane, Real, SolidAngle, to_solid_angle};
 pub use mis::{Heuristic, UnknownHeuristic, balance_weight, mis_estimate, power_weight};
 pub use mixture::{Mix2, Mixture, MixtureError};

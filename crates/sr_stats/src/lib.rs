@@ -19,7 +19,7 @@ pub use chi2::Chi2Settings;
 pub use ks::ks;
 pub use means::{t_test, welch, z_test, z_test_pair};
 pub use report::TestReport;
-pub use tails::{normal_beyond, student_beyond};
+pub use tails::{normal_beyond, student_beyond, student_t_quantile};
 
 /// The level for each of `tests` independent tests, such that the chance of any false alarm is `level`.
 ///

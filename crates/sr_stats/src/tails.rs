@@ -12,6 +12,31 @@ pub fn student_beyond(t: f64, dof: f64) -> f64 {
     if t.is_infinite() { 0.0 } else { beta_reg(0.5 * dof, 0.5, dof / (dof + t * t)) }
 }
 
+/// The number that Student's t with `dof` degrees of freedom stays below with probability `p` in (0, 1).
+///
+/// By bisection of [`student_beyond`]; above 10⁷ degrees of freedom that of the normal distribution, which is as near.
+/// NaN if an argument makes no sense.
+pub fn student_t_quantile(p: f64, dof: f64) -> f64 {
+    if !(p > 0.0 && p < 1.0 && dof > 0.0) {
+        return f64::NAN;
+    }
+    let beyond = 2.0 * p.min(1.0 - p);
+    let above = |t: f64| if dof < 1e7 { student_beyond(t, dof) } else { normal_beyond(t) };
+    let (mut low, mut high) = (0.0, 1.0);
+    while above(high) > beyond && high < 1e300 {
+        (low, high) = (high, high * 2.0);
+    }
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        if above(middle) > beyond {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    if p < 0.5 { -high } else { high }
+}
+
 /// P(|Z| ≥ |z|) of the normal distribution.
 pub fn normal_beyond(z: f64) -> f64 {
     erfc(z.abs() * std::f64::consts::FRAC_1_SQRT_2)
@@ -49,6 +74,18 @@ mod tests {
         close(kolmogorov_above(1.358_098_68), 0.05);
         assert_eq!(chi2_above(0.0, 3.0), 1.0);
         assert_eq!(student_beyond(f64::INFINITY, 3.0), 0.0);
+    }
+
+    /// Tables of Student's t (Abramowitz & Stegun 26.10).
+    #[test]
+    fn known_quantiles() {
+        close(student_t_quantile(0.975, 1.0), 12.706_204_736);
+        close(student_t_quantile(0.975, 31.0), 2.039_513_446);
+        close(student_t_quantile(0.025, 31.0), -2.039_513_446);
+        close(student_t_quantile(0.9995, 7.0), 5.407_882_521);
+        close(student_t_quantile(0.975, 1e9), 1.959_963_985);
+        assert!(student_t_quantile(0.5, 3.0).abs() < 1e-12);
+        assert!(student_t_quantile(1.5, 3.0).is_nan());
     }
 
     /// For many degrees of freedom the tail is that of the normal law, by Wilson & Hilferty (1931).

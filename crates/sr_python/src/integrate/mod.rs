@@ -1,0 +1,26 @@
+//! Integrals and the densities that they sample.
+
+mod arrays;
+mod density;
+mod foreign;
+mod make;
+mod native;
+mod run;
+
+use pyo3::prelude::*;
+
+pub use density::Density;
+
+/// Adds what this folder has to the module.
+pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_class::<Density>()?;
+    module.add_class::<native::Native>()?;
+    module.add_class::<run::Integral>()?;
+    module.add_function(wrap_pyfunction!(run::integrate, module)?)?;
+    module.add_function(wrap_pyfunction!(run::mis_integrate, module)?)?;
+    module.add_function(wrap_pyfunction!(run::ris_integrate, module)?)?;
+    module.add_function(wrap_pyfunction!(run::points, module)?)?;
+    module.add_function(wrap_pyfunction!(run::student_t, module)?)?;
+    module.add_function(wrap_pyfunction!(run::format_uncertain, module)?)?;
+    make::register(module)
+}

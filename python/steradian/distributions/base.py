@@ -1,0 +1,274 @@
+"""What every distribution can do, and how to write one's own."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from numbers import Real
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from steradian import _internal
+
+if TYPE_CHECKING:
+    from steradian.distributions.composite import Mixture, Product
+
+Array = NDArray[np.float64]
+
+
+class Samples(NamedTuple):
+    """Points and the densities that they were drawn with."""
+
+    value: Array
+    """(n,) if the distribution has one coordinate, (n, dim) otherwise."""
+    pdf: Array
+    """(n,), positive. 0 where nothing was drawn: that contributes nothing, and the value may be anything."""
+
+
+class Distribution(ABC):
+    """A probability density that can be sampled and evaluated.
+
+    To bring your own, give a subclass ``sample`` and ``pdf`` over NumPy arrays, and, where they differ from these,
+    the attributes ``dim``, ``uniforms``, ``space`` and ``support``. It then works wherever the built-in ones do.
+
+    >>> import numpy as np, steradian as sr
+    >>> class Triangle(sr.Distribution):
+    ...     "Density 2x on [0, 1]."
+    ...     def sample(self, u):
+    ...         return sr.Samples(np.sqrt(u), 2 * np.sqrt(u))
+    ...     def pdf(self, x):
+    ...         return np.where((x >= 0) & (x <= 1), 2 * x, 0.0)
+    >>> print(sr.integrate(lambda x: 3 * x, over=Triangle(), n=1024))
+    1.5 ± 0 (n = 1024)
+    """
+
+    dim: int = 1
+    """Coordinates of a point."""
+
+    uniforms: int = 1
+    """Uniforms in [0, 1) that a sample consumes."""
+
+    space: str | None = None
+    """What the density is a density of: ``"solid angle"``, ``"surface area"``, ``"counting"``, or ``None`` for length,
+    area or volume, by ``dim``."""
+
+    @abstractmethod
+    def sample(self, u: ArrayLike) -> Samples:
+        """Draws a point from each row of uniforms.
+
+        ``u``: (n,) or (n, uniforms), each in [0, 1). Returns points and their densities; see :class:`Samples`.
+        """
+
+    @abstractmethod
+    def pdf(self, x: ArrayLike) -> Array:
+        """The density at points: (...,) for one coordinate, (..., dim) otherwise → (...,); 0 outside the support."""
+
+    @property
+    def support(self) -> Array:
+        """(dim, 2): the least box that holds the support, infinite where it has no end."""
+        return np.tile([-np.inf, np.inf], (self.dim, 1))
+
+    @property
+    def mean(self) -> float | Array | None:
+        """The expected point; ``None`` if it is not known or does not exist."""
+        return None
+
+    def draw(self, n: int, seed: int = 0, sequence: str = "independent") -> Samples:
+        """``n`` samples from uniforms of a sequence: ``"independent"``, ``"stratified"``, ``"sobol"`` or ``"lattice"``.
+
+        >>> import steradian as sr
+        >>> sr.Uniform(2, 3).draw(1000).value.mean().round(1)
+        np.float64(2.5)
+        """
+        return self.sample(_internal.points(sequence, self.uniforms, n, seed, 0, 0))
+
+    def __mul__(self, other: Distribution | float) -> Product | Mixture | WeightedSum:
+        """``p * q`` is the product, of independent coordinates; ``p * 0.5`` a part of a mixture."""
+        from steradian.distributions.composite import Product
+
+        if isinstance(other, Distribution):
+            return Product([self, other])
+        if isinstance(other, Real):
+            return weighted_sum([(float(other), self)])
+        return NotImplemented
+
+    def __rmul__(self, weight: float) -> Mixture | WeightedSum:
+        """``0.3 * p``: a part of a mixture, ``0.3 * p + 0.7 * q``."""
+        if isinstance(weight, Real):
+            return weighted_sum([(float(weight), self)])
+        return NotImplemented
+
+    @property
+    def _core(self) -> _internal.Density:
+        """The compiled density that this is."""
+        support = [(float(low), float(high)) for low, high in np.asarray(self.support, float).reshape(-1, 2)]
+        return _internal.foreign_density(self, self.space or "", self.dim, self.uniforms, support)
+
+    def _sample_rows(self, u: Array) -> tuple[Array, Array]:
+        """What compiled code calls: ``sample`` of (n, uniforms), with its result checked."""
+        value, pdf = self.sample(u[:, 0] if self.uniforms == 1 else u)
+        value = _checked(f"{type(self).__name__}.sample", value, len(u), self.dim)
+        return value, _checked(f"the pdf of {type(self).__name__}.sample", pdf, len(u), 1)[:, 0]
+
+    def _pdf_rows(self, x: Array) -> Array:
+        """What compiled code calls: ``pdf`` of (n, dim), with its result checked."""
+        pdf = self.pdf(x[:, 0] if self.dim == 1 else x)
+        return _checked(f"{type(self).__name__}.pdf", pdf, len(x), 1)[:, 0]
+
+
+class Compiled(Distribution):
+    """A distribution that is evaluated by compiled code."""
+
+    def __init__(self, core: _internal.Density, **arguments: Any) -> None:
+        self.__core = core
+        self._arguments = arguments
+        self.dim = core.dim()
+        self.uniforms = core.uniforms()
+        self.space = core.space()
+
+    @property
+    def _core(self) -> _internal.Density:
+        return self.__core
+
+    def sample(self, u: ArrayLike) -> Samples:
+        """Draws a point from each row of ``u``: (n,) or (n, uniforms), in [0, 1).
+
+        Raises ValueError if a uniform is outside, or the shape is another.
+        """
+        rows = as_rows("u", u, self.uniforms)
+        if not np.all((rows >= 0) & (rows < 1)):
+            bad = rows[~((rows >= 0) & (rows < 1))][0]
+            raise ValueError(f"u holds {bad}; uniforms are in [0, 1)")
+        value, pdf = self._core.sample(rows)
+        return Samples(value[:, 0] if self.dim == 1 else value, pdf)
+
+    def pdf(self, x: ArrayLike) -> Array:
+        """The density at points: (...,) for one coordinate, (..., dim) otherwise → (...,); 0 outside the support."""
+        points = np.asarray(x, float)
+        shape = points.shape if self.dim == 1 else points.shape[:-1]
+        if self.dim > 1 and (points.ndim == 0 or points.shape[-1] != self.dim):
+            raise ValueError(f"x has shape {points.shape}; the last axis must have {self.dim} coordinates")
+        return self._core.pdf(points.reshape(-1, self.dim)).reshape(shape)
+
+    def invert(self, x: ArrayLike) -> Array:
+        """The uniforms that ``sample`` maps to points, (n,) or (n, dim) → (n,) or (n, uniforms).
+
+        NaN outside the support. Raises TypeError if this distribution cannot be inverted.
+        """
+        u = self._core.invert(as_rows("x", x, self.dim))
+        return u[:, 0] if self.uniforms == 1 else u
+
+    def cdf(self, x: ArrayLike) -> Array:
+        """The probability of a value of at most ``x``, any shape. Raises TypeError if that is not known."""
+        points = np.asarray(x, float)
+        return self._core.cdf(points.reshape(-1)).reshape(points.shape)
+
+    def icdf(self, u: ArrayLike) -> Array:
+        """The value below which a share ``u`` in [0, 1] of the probability lies, any shape.
+
+        Raises TypeError if that is not known, ValueError if a share is outside.
+        """
+        shares = np.asarray(u, float)
+        if not np.all((shares >= 0) & (shares <= 1)):
+            raise ValueError(f"u holds {shares[~((shares >= 0) & (shares <= 1))].flat[0]}; shares are in [0, 1]")
+        return self._core.icdf(shares.reshape(-1)).reshape(shares.shape)
+
+    @property
+    def support(self) -> Array:
+        """(dim, 2): the least box that holds the support, infinite where it has no end."""
+        return np.array(self._core.support()).reshape(-1, 2)
+
+    @property
+    def mean(self) -> float | Array | None:
+        """The expected point; ``None`` if it is not known or does not exist."""
+        mean = self._core.mean()
+        if mean is None:
+            return None
+        return mean[0] if self.dim == 1 else np.array(mean)
+
+    def __repr__(self) -> str:
+        arguments = ", ".join(f"{name}={_short(value)}" for name, value in self._arguments.items())
+        return f"{type(self).__name__}({arguments})"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _remake, (type(self), self._arguments)
+
+
+class WeightedSum:
+    """A mixture on its way: ``0.3 * p``, to which something must be added for the weights to sum to 1."""
+
+    def __init__(self, terms: Sequence[tuple[float, Distribution]]) -> None:
+        self._terms = list(terms)
+
+    def __add__(self, other: WeightedSum) -> Mixture | WeightedSum:
+        if not isinstance(other, WeightedSum):
+            return NotImplemented
+        return weighted_sum(self._terms + other._terms)
+
+    def __repr__(self) -> str:
+        return " + ".join(f"{weight} * {part!r}" for weight, part in self._terms)
+
+
+def weighted_sum(terms: Sequence[tuple[float, Distribution]]) -> Mixture | WeightedSum:
+    """A mixture if the weights sum to 1, and otherwise what may still become one."""
+    from steradian.distributions.composite import Mixture
+
+    if len(terms) > 1 and abs(sum(weight for weight, _ in terms) - 1) < 1e-9:
+        return Mixture([part for _, part in terms], [weight for weight, _ in terms])
+    return WeightedSum(terms)
+
+
+def as_distribution(value: object, argument: str = "over") -> Distribution:
+    """A distribution from one, or from a list of (low, high) for a box.
+
+    Raises TypeError or ValueError, naming ``argument``, if it is neither.
+    """
+    from steradian.distributions.line import Uniform
+
+    if isinstance(value, Distribution):
+        return value
+    if isinstance(value, WeightedSum):
+        total = sum(weight for weight, _ in value._terms)
+        raise ValueError(f"{argument} is {value!r}, whose weights sum to {total:g}, not to 1")
+    try:
+        box = np.asarray(value, float)
+    except (TypeError, ValueError):
+        box = np.empty(0)
+    if box.ndim != 2 or box.shape[1] != 2 or len(box) == 0:
+        raise TypeError(f"{argument} must be a distribution, or (low, high) for each dimension, not {value!r}")
+    return Uniform(box[:, 0], box[:, 1]) if len(box) > 1 else Uniform(box[0, 0], box[0, 1])
+
+
+def as_rows(argument: str, value: ArrayLike, width: int) -> Array:
+    """``value`` as (n, width) numbers; (n,) will do if ``width`` is 1. Raises ValueError naming ``argument``."""
+    array = np.asarray(value, float)
+    if array.ndim < 2 and width == 1:
+        array = array.reshape(-1, 1)
+    if array.ndim != 2 or array.shape[1] != width:
+        wanted = f"(n, {width})" if width > 1 else "(n,)"
+        raise ValueError(f"{argument} has shape {np.shape(value)}; it must be {wanted}")
+    return array
+
+
+def _checked(what: str, value: object, n: int, width: int) -> Array:
+    """The result of somebody's method as (n, width) numbers, or a ValueError that says what is wrong with it."""
+    array = np.asarray(value, float)
+    if array.shape == (n,) and width == 1:
+        array = array.reshape(n, 1)
+    if array.shape != (n, width):
+        wanted = f"({n}, {width})" if width > 1 else f"({n},)"
+        raise ValueError(f"{what} returned shape {np.shape(value)}; it must be {wanted}")
+    return array
+
+
+def _short(value: object) -> str:
+    """A value as it may stand in a line of text."""
+    if isinstance(value, np.ndarray):
+        return np.array2string(value, threshold=6, separator=", ").replace("\n", "")
+    return repr(value)
+
+
+def _remake(kind: type[Compiled], arguments: dict[str, Any]) -> Compiled:
+    return kind(**arguments)

@@ -1,0 +1,76 @@
+"""A mean with an error that can be believed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from steradian import _internal
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """What is known of an integral: ``25.0013 ± 0.0046 (n = 100000)``.
+
+    Numbers for one integral, arrays (m,) for an integrand that returns m values a point.
+    """
+
+    mean: float | Array
+    """The estimate."""
+    stderr: float | Array
+    """Its standard error: of independent samples, or from the spread of independent replicates."""
+    n: int
+    """Evaluations of the integrand, those included that count as 0."""
+    dof: int = 0
+    """Degrees of freedom of ``stderr``: what Student's t takes for an interval."""
+    seconds: float = 0.0
+    """How long it took."""
+    nans: int = 0
+    """Points where the integrand was infinite or not a number, and counted as 0 (with ``nan="zero"``)."""
+    covariance: Array | None = None
+    """(m, m), of the means; ``None`` for one integral."""
+    diagnostics: dict[str, Any] = field(default_factory=dict)
+    """What was noticed: ``effective_n`` (Kish), ``largest_share`` (of a single point), ``not_drawn``, …"""
+
+    def interval(self, level: float = 0.95) -> tuple[float | Array, float | Array]:
+        """The interval that holds the integral with probability ``level``, by Student's t.
+
+        >>> import steradian as sr
+        >>> low, high = sr.integrate(lambda x: x * x, over=[(0, 1)], n=4096).interval()
+        >>> low < 1 / 3 < high
+        True
+        """
+        if not 0 < level < 1:
+            raise ValueError(f"level is {level}; it must be between 0 and 1")
+        half = _internal.student_t(0.5 + 0.5 * level, self.dof) * self.stderr
+        return self.mean - half, self.mean + half
+
+    @property
+    def relative_error(self) -> float | Array:
+        """The standard error relative to the mean, without its sign."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            relative = np.divide(self.stderr, np.abs(self.mean))
+        return relative if np.ndim(relative) else float(relative)
+
+    def __float__(self) -> float:
+        return float(self.mean)
+
+    def __str__(self) -> str:
+        if np.ndim(self.mean) == 0:
+            return f"{format_uncertain(float(self.mean), float(self.stderr))} (n = {self.n})"
+        parts = (format_uncertain(float(m), float(s)) for m, s in zip(self.mean, self.stderr, strict=True))
+        return f"[{', '.join(parts)}] (n = {self.n})"
+
+
+def format_uncertain(mean: float, stderr: float) -> str:
+    """The error with two digits, the mean with as many decimals.
+
+    >>> format_uncertain(25.00132, 0.00463)
+    '25.0013 ± 0.0046'
+    """
+    return _internal.format_uncertain(mean, stderr)
