@@ -1,4 +1,4 @@
-"""Steradian: images by Monte Carlo, with the error of every pixel.
+"""Steradian: images and integrals by Monte Carlo, with their errors.
 
     import steradian as sr
 
@@ -8,8 +8,13 @@
     result.stderr       # its standard error, same shape
     result.write("cornell-box.exr")
 
+    print(sr.integrate(lambda x: 2 * x, over=sr.Uniform(0, 5)))         # a mean with its error
+
 Every sample is drawn in compiled code; NumPy is loaded when the first array is asked for.
 """
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 from steradian._internal import __version__
 from steradian.diagnostics import Diagnostic, SceneError, SceneWarning
@@ -28,23 +33,83 @@ from steradian.strategy import (
 )
 from steradian.transform import Transform
 
+if TYPE_CHECKING:
+    from steradian.distributions import (
+        Distribution as Distribution,
+        Exponential as Exponential,
+        Linear as Linear,
+        Mixture as Mixture,
+        Normal as Normal,
+        Power as Power,
+        Product as Product,
+        Samples as Samples,
+        Tent as Tent,
+        Truncated as Truncated,
+        Uniform as Uniform,
+    )
+    from steradian.integration import (
+        Estimate as Estimate,
+        IntegrandError as IntegrandError,
+        IntegrationProgress as IntegrationProgress,
+        IntegrationWarning as IntegrationWarning,
+        SupportError as SupportError,
+        integrate as integrate,
+        mis_integrate as mis_integrate,
+        ris_integrate as ris_integrate,
+    )
+
+# Modules that need NumPy, which takes as long to load as everything else: loaded when one of their names is used.
+_LAZY = ("steradian.distributions", "steradian.integration")
+
 __all__ = [
     "Density",
     "Diagnostic",
+    "Distribution",
+    "Estimate",
+    "Exponential",
+    "IntegrandError",
+    "IntegrationProgress",
+    "IntegrationWarning",
+    "Linear",
+    "Mixture",
+    "Normal",
+    "Power",
+    "Product",
     "Progress",
     "Result",
+    "Samples",
     "Scene",
     "SceneError",
     "SceneWarning",
     "Strategy",
+    "SupportError",
+    "Tent",
     "Transform",
+    "Truncated",
+    "Uniform",
     "__version__",
     "bsdf",
     "cosine",
+    "integrate",
     "light",
     "load",
     "mis",
+    "mis_integrate",
     "render",
+    "ris_integrate",
     "strategy",
     "uniform",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    if name in __all__:
+        for module in map(import_module, _LAZY):
+            if name in module.__all__:
+                value = globals()[name] = getattr(module, name)
+                return value
+    raise AttributeError(f"module 'steradian' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

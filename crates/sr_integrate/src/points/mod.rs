@@ -126,12 +126,12 @@ impl Points {
         assert!(u.is_empty() || u.dim() == self.dim, "{} columns for {} dimensions", u.dim(), self.dim);
         let key = derive_key(self.key, replicate);
         for j in 0..if u.is_empty() { 0 } else { self.dim } {
-            let key = derive_key(key, j as u32);
+            let key_j = derive_key(key, j as u32);
             match &self.kind {
-                Kind::Independent => independent::fill(key, first, u.column(j)),
-                Kind::Stratified => stratified::fill(key, first as u32, [j, self.dim], u.column(j)),
-                Kind::Sobol(sobol) => sobol.fill(key, first as u32, j, u.column(j)),
-                Kind::Lattice(lattice) => lattice.fill(key, first as u32, j, u.column(j)),
+                Kind::Independent => independent::fill(key_j, first, u.column(j)),
+                Kind::Stratified => stratified::fill(key, key_j, first as u32, [j, self.dim], u.column(j)),
+                Kind::Sobol(sobol) => sobol.fill(key_j, first as u32, j, u.column(j)),
+                Kind::Lattice(lattice) => lattice.fill(key_j, first as u32, j, u.column(j)),
             }
         }
     }
@@ -210,6 +210,29 @@ mod tests {
                     );
                 }
             }
+        }
+    }
+
+    /// The variance of a mean over 64 replicates of 1024 points, in three dimensions, over that of independent points: well
+    /// below 1 for all others. (64 replicates know a variance to 18 %, so that 2 is never reached by chance.)
+    #[test]
+    fn correlated_points_do_better() {
+        let variance = |sequence| {
+            let means: Vec<f64> = (0..64)
+                .map(|replicate| {
+                    let all = columns(sequence, 3, replicate, 0, 1024);
+                    let f = |i: usize| (all[0][i] + 2.0 * all[1][i] * all[2][i]).exp();
+                    (0..1024).map(f).sum::<f64>() / 1024.0
+                })
+                .collect();
+            means.into_iter().collect::<sr_sampling::Accumulator>().variance()
+        };
+        let independent = variance(Sequence::Independent);
+        for (sequence, most) in
+            [(Sequence::Stratified, 0.1), (Sequence::Sobol, 1e-3), (Sequence::Lattice, 1e-3)]
+        {
+            let ratio = variance(sequence) / independent;
+            assert!(ratio < most, "{sequence:?}: {ratio}");
         }
     }
 

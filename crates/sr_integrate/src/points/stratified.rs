@@ -2,22 +2,25 @@
 //!
 //! The bits of the index are dealt out to the dimensions in turn, from the lowest, and are the leading digits of their
 //! coordinates. So an aligned block of 2ᵏ points fills a grid of 2ᵏ cells, whose sides differ by a factor of two at
-//! most, and every block is one of finer cells, too. Owen's scrambling chooses the places.
+//! most, and every block is one of finer cells, too. The bits are scrambled first, each by a random function of those
+//! below it: which half of a cell a point falls in is chosen anew in every cell.
 
 use sr_sampling::sequence::mix::{mix64, scramble_low_first};
 
 use super::unit::to_unit;
 
 /// The coordinates of one dimension, `[j, dim]`: which of how many.
-pub fn fill(key: u64, first: u32, [j, dim]: [usize; 2], u: &mut [f64]) {
+///
+/// - `key`: of all dimensions; `key_j`: of this one
+pub fn fill(key: u64, key_j: u64, first: u32, [j, dim]: [usize; 2], u: &mut [f64]) {
     let digits = if j < 32 { (32 - j).div_ceil(dim) as u32 } else { 0 };
     let beyond = if digits == 0 { u64::MAX } else { (1 << (64 - digits)) - 1 };
     for (i, u) in u.iter_mut().enumerate() {
         let index = first.wrapping_add(i as u32);
-        let scrambled = scramble_low_first(dealt(index, j, dim), key as u32).reverse_bits();
-        // Which cell is the scramble's choice; where in it, the index's.
-        let within = mix64(key.wrapping_add(u64::from(index).wrapping_mul(0x9e37_79b9_7f4a_7c15)));
-        *u = to_unit((u64::from(scrambled) << 32 & !beyond) | (within & beyond));
+        let cell = dealt(scramble_low_first(index, key as u32), j, dim).reverse_bits();
+        // Which cell is the scramble's choice; where in it, nobody's.
+        let within = mix64(key_j.wrapping_add(u64::from(index).wrapping_mul(0x9e37_79b9_7f4a_7c15)));
+        *u = to_unit((u64::from(cell) << 32 & !beyond) | (within & beyond));
     }
 }
 
@@ -43,7 +46,7 @@ mod tests {
                 let columns: Vec<Vec<f64>> = (0..dim)
                     .map(|j| {
                         let mut u = vec![0.0; 64];
-                        fill(mix64(j as u64 + 9), 64 * block, [j, dim], &mut u);
+                        fill(5, mix64(j as u64 + 9), 64 * block, [j, dim], &mut u);
                         u
                     })
                     .collect();

@@ -36,7 +36,9 @@ impl Density {
         if found == expected {
             return Ok(());
         }
-        Err(PyValueError::new_err(format!("{argument} has {found} columns; this distribution needs {expected}")))
+        Err(PyValueError::new_err(format!(
+            "{argument} has {found} columns; this distribution needs {expected}"
+        )))
     }
 }
 
@@ -90,7 +92,9 @@ impl Density {
         let (x, n) = to_columns(&x);
         self.check("x", x.len().checked_div(n).unwrap_or(self.dim()), self.dim())?;
         let mut u = vec![0.0; n * self.0.uniforms()];
-        inverse.invert(Columns::new(&x, n), ColumnsMut::new(&mut u, n)).map_err(|error| density_error(py, error))?;
+        inverse
+            .invert(Columns::new(&x, n), ColumnsMut::new(&mut u, n))
+            .map_err(|error| density_error(py, error))?;
         to_rows(py, u, n)
     }
 

@@ -45,13 +45,17 @@ impl Native {
         // SAFETY: Python says what is there, from the declared types of the function; see steradian/integrands.py.
         let call = unsafe {
             match call {
-                "number" => Call::Number(std::mem::transmute::<*const c_void, extern "C" fn(f64) -> f64>(pointer)),
-                "point" => {
-                    Call::Point(std::mem::transmute::<*const c_void, extern "C" fn(*const f64, i64) -> f64>(pointer))
+                "number" => {
+                    Call::Number(std::mem::transmute::<*const c_void, extern "C" fn(f64) -> f64>(pointer))
                 }
-                "dim_point" => {
-                    Call::DimPoint(std::mem::transmute::<*const c_void, extern "C" fn(i32, *const f64) -> f64>(pointer))
-                }
+                "point" => Call::Point(std::mem::transmute::<
+                    *const c_void,
+                    extern "C" fn(*const f64, i64) -> f64,
+                >(pointer)),
+                "dim_point" => Call::DimPoint(std::mem::transmute::<
+                    *const c_void,
+                    extern "C" fn(i32, *const f64) -> f64,
+                >(pointer)),
                 "dim_point_data" => Call::DimPointData(std::mem::transmute::<
                     *const c_void,
                     extern "C" fn(i32, *const f64, *mut c_void) -> f64,

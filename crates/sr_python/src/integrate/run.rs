@@ -92,10 +92,15 @@ pub fn mis_integrate(
     f: &Bound<'_, PyAny>,
     request: Request,
 ) -> PyResult<Integral> {
-    let densities: Vec<Arc<dyn sr_integrate::Density>> = densities.iter().map(|p| p.get().0.clone()).collect();
-    let combined = Combined::all(&densities, &counts, heuristic.parse().map_err(value_error)?).map_err(value_error)?;
-    let techniques: Vec<(&dyn Technique, u32)> =
-        combined.iter().zip(&counts).map(|(technique, &count)| (technique as &dyn Technique, count)).collect();
+    let densities: Vec<Arc<dyn sr_integrate::Density>> =
+        densities.iter().map(|p| p.get().0.clone()).collect();
+    let combined =
+        Combined::all(&densities, &counts, heuristic.parse().map_err(value_error)?).map_err(value_error)?;
+    let techniques: Vec<(&dyn Technique, u32)> = combined
+        .iter()
+        .zip(&counts)
+        .map(|(technique, &count)| (technique as &dyn Technique, count))
+        .collect();
     run(py, &techniques, f, request)
 }
 
@@ -155,7 +160,8 @@ fn run(
         nan_as_zero: request.nan_as_zero,
     };
     plan.check().map_err(value_error)?;
-    let domains: Vec<_> = request.domains.iter().map(|(p, domain)| (p.get().0.clone(), domain.clone())).collect();
+    let domains: Vec<_> =
+        request.domains.iter().map(|(p, domain)| (p.get().0.clone(), domain.clone())).collect();
     let native = f.cast::<Native>().ok().map(|native| native.clone().unbind());
     let mut function = Function(f.clone().unbind());
     let mut on_round = |progress: &Progress| -> Result<(), Box<dyn Error + Send + Sync>> {
@@ -230,7 +236,9 @@ pub fn points<'py>(
     first: u64,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     if dim.saturating_mul(n) > MAX_NUMBERS {
-        return Err(PyValueError::new_err(format!("{n} points of {dim} uniforms are too many; the limit is 2^31 numbers")));
+        return Err(PyValueError::new_err(format!(
+            "{n} points of {dim} uniforms are too many; the limit is 2^31 numbers"
+        )));
     }
     let points = Points::new(sequence.parse().map_err(value_error)?, dim, seed);
     let mut numbers = vec![0.0; dim * n];
