@@ -8,12 +8,13 @@ use crate::space::Space;
 
 /// The least uniform that a sample is drawn from: half the spacing of uniforms of 53 bits.
 ///
-/// A uniform of 0 stands for all numbers up to the next one. Drawn from 0 itself, a distribution without a lower end
-/// would give −∞, and a pole there an infinite density.
+/// A uniform of 0 stands for all numbers up to the next one. Drawn from 0 itself, a distribution without a
+/// lower end would give −∞, and a pole there an infinite density.
 const LEAST: f64 = f64::EPSILON / 4.0;
 
-/// A distribution of one real number with a distribution function that can be inverted. Everything else follows:
-/// whatever implements it is a [`Density`] of [`Space::Line`], drawn by inversion, so that strata survive.
+/// A distribution of one real number with a distribution function that can be inverted. Everything else
+/// follows: whatever implements it is a [`Density`] of [`Space::Line`], drawn by inversion, so that strata
+/// survive.
 pub trait OnLine: Cumulative + Send + Sync + fmt::Debug {
     /// The density at `x`; 0 outside the support, and at NaN.
     fn density(&self, x: f64) -> f64;

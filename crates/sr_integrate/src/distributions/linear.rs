@@ -92,7 +92,8 @@ impl Cumulative for Linear {
     }
 }
 
-/// A density that rises linearly from 0 at `low` to a peak, and falls to 0 at `high`: a triangular distribution.
+/// A density that rises linearly from 0 at `low` to a peak, and falls to 0 at `high`: a triangular
+/// distribution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tent {
     low: f64,

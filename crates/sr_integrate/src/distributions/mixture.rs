@@ -10,8 +10,9 @@ use crate::space::Space;
 
 /// A weighted sum of densities of one space.
 ///
-/// The first uniform picks a component; stretched over the component's share of [0, 1), it is then the component's own
-/// first uniform, so that strata survive. There are as many uniforms as the neediest component takes.
+/// The first uniform picks a component; stretched over the component's share of [0, 1), it is then the
+/// component's own first uniform, so that strata survive. There are as many uniforms as the neediest
+/// component takes.
 #[derive(Clone, Debug)]
 pub struct Mixture {
     components: Vec<Arc<dyn Density>>,
@@ -28,8 +29,8 @@ const SLACK: f64 = 1e-9;
 
 impl Mixture {
     /// # Errors
-    /// If there is no component, the lists differ in length, a weight is negative or not finite, the weights do not
-    /// sum to 1 within 10⁻⁹, or the components are densities of different spaces.
+    /// If there is no component, the lists differ in length, a weight is negative or not finite, the weights
+    /// do not sum to 1 within 10⁻⁹, or the components are densities of different spaces.
     pub fn new(components: Vec<Arc<dyn Density>>, weights: Vec<f64>) -> Result<Self, ParameterError> {
         let Some(first) = components.first() else {
             return Err(ParameterError::Length { argument: "components", len: 0, need: "at least 1".into() });

@@ -84,8 +84,8 @@ impl Cumulative for Normal {
     }
 }
 
-/// A normal distribution cut to [low, high], which may be infinite on either side, and may lie so far out that its
-/// probability is no number: 40 standard deviations are e⁻⁸⁰⁵.
+/// A normal distribution cut to [low, high], which may be infinite on either side, and may lie so far out
+/// that its probability is no number: 40 standard deviations are e⁻⁸⁰⁵.
 ///
 /// Everything is taken relative to the end that is nearer to the mean, by Mills' ratio P(Z > z) / φ(z).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,8 +103,8 @@ pub struct TruncatedNormal {
 
 impl TruncatedNormal {
     /// # Errors
-    /// If `low` is not below `high`, or too near to it for the density to be a finite number, or 10¹⁵⁰ or more
-    /// standard deviations out.
+    /// If `low` is not below `high`, or too near to it for the density to be a finite number, or 10¹⁵⁰ or
+    /// more standard deviations out.
     pub fn new(of: Normal, low: f64, high: f64) -> Result<Self, ParameterError> {
         if !(low < high) {
             return Err(ParameterError::Interval { argument: "[low, high]".into(), low, high });
@@ -149,7 +149,8 @@ impl TruncatedNormal {
     /// The value below which, from the near end, a share `u` lies.
     fn within(&self, u: f64) -> f64 {
         let target = u * self.mass;
-        // Where the tail is as good as exponential, a guess that is good: Q(x) / Q(near) = v at √(near² − 2 ln v).
+        // Where the tail is as good as exponential, a guess that is good: Q(x) / Q(near) = v at √(near² − 2
+        // ln v).
         let far_share = (1.0 - u) + u * (1.0 - self.mass / mills(self.near.max(0.0))).max(0.0);
         let guess = if self.near > 0.0 {
             let drop = -2.0 * far_share.ln();
@@ -213,7 +214,8 @@ fn mills(z: f64) -> f64 {
     if z < 8.0 {
         return upper(z) / phi(z);
     }
-    // Laplace's continued fraction 1 / (z + 1 / (z + 2 / (z + 3 / …))): 40 terms leave less than rounding does.
+    // Laplace's continued fraction 1 / (z + 1 / (z + 2 / (z + 3 / …))): 40 terms leave less than rounding
+    // does.
     let mut tail = z;
     for k in (1..40).rev() {
         tail = z + f64::from(k) / tail;

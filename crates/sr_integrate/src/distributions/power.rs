@@ -25,8 +25,8 @@ const LOST: f64 = f64::EPSILON / 4.0;
 
 impl Power {
     /// # Errors
-    /// If [low, high] is no interval or begins below 0, or k is not finite. If it begins at 0, k must be above −1,
-    /// and by so much (0.05 for high = 1) that the samples can be told from 0.
+    /// If [low, high] is no interval or begins below 0, or k is not finite. If it begins at 0, k must be
+    /// above −1, and by so much (0.05 for high = 1) that the samples can be told from 0.
     pub fn new(exponent: f64, low: f64, high: f64) -> Result<Self, ParameterError> {
         finite("exponent", exponent)?;
         width("[low, high]", low, high)?;

@@ -7,8 +7,8 @@ use crate::columns::{Columns, ColumnsMut};
 use crate::density::{Cumulative, Density, DensityError, Inverse};
 use crate::space::Space;
 
-/// Independent coordinates: p(x, y, …) = p₁(x) p₂(y) …, over the coordinates of all factors in order. Each factor
-/// takes uniforms of its own.
+/// Independent coordinates: p(x, y, …) = p₁(x) p₂(y) …, over the coordinates of all factors in order. Each
+/// factor takes uniforms of its own.
 #[derive(Clone, Debug)]
 pub struct Product {
     factors: Vec<Arc<dyn Density>>,

@@ -2,8 +2,8 @@
 
 /// The x in [low, high] with f(x) = `target`, of a function that never falls, from its value and slope.
 ///
-/// Newton's steps while they stay between the bounds known so far, halving where they do not; the bounds close in on
-/// the solution until no number lies between. `guess` may be anything.
+/// Newton's steps while they stay between the bounds known so far, halving where they do not; the bounds
+/// close in on the solution until no number lies between. `guess` may be anything.
 pub(crate) fn increasing(
     f: impl Fn(f64) -> (f64, f64),
     target: f64,

@@ -9,8 +9,8 @@ use crate::space::Space;
 
 /// `of` cut to [low, high], and scaled up to integrate to 1.
 ///
-/// A distribution may have a form of its own for that ([`Cumulative::between`]): a normal one, which keeps its digits
-/// at any distance. All others are cut by their distribution functions.
+/// A distribution may have a form of its own for that ([`Cumulative::between`]): a normal one, which keeps
+/// its digits at any distance. All others are cut by their distribution functions.
 ///
 /// # Errors
 /// If `of` is not on the line or has no distribution function, `low` is not below `high`, or nothing is drawn
@@ -37,8 +37,8 @@ pub fn truncate(of: Arc<dyn Density>, low: f64, high: f64) -> Result<Arc<dyn Den
     Ok(Arc::new(Truncated::new(of, low, high)?))
 }
 
-/// A distribution cut to an interval, by its distribution function: from the tail in which the interval lies, so that
-/// it loses no more digits than the interval is narrower than its distance from that tail's end.
+/// A distribution cut to an interval, by its distribution function: from the tail in which the interval lies,
+/// so that it loses no more digits than the interval is narrower than its distance from that tail's end.
 #[derive(Clone, Debug)]
 struct Truncated {
     of: Arc<dyn Density>,
@@ -109,8 +109,8 @@ impl Density for Truncated {
         self.of.domain().map(|_| self.support())
     }
 
-    /// ∫ x p(x) dx as the mean of the inverse distribution function over [0, 1], if the interval is finite and
-    /// halving parts of it settles the sum.
+    /// ∫ x p(x) dx as the mean of the inverse distribution function over [0, 1], if the interval is finite
+    /// and halving parts of it settles the sum.
     fn mean(&self) -> Option<Vec<f64>> {
         if !(self.low.is_finite() && self.high.is_finite()) {
             return None;
