@@ -10,7 +10,6 @@ pub mod film;
 pub mod filter;
 pub mod image;
 pub mod integrator;
-mod isa;
 pub mod light;
 pub mod material;
 pub mod output;

@@ -10,12 +10,12 @@ use glam::Vec2;
 use rayon::prelude::*;
 use sr_geometry::{BATCH, Vec2s};
 use sr_sampling::Sequence;
+use sr_sampling::isa::{Isa, Work};
 
 use crate::camera::Camera;
 use crate::film::{AUX, PixelSums, REPLICATES, SUMS};
 use crate::filter::PixelFilter;
 use crate::integrator::{CameraRays, Integrator, PathSample};
-use crate::isa::{Isa, Work};
 use crate::pairwise::{PairwiseSum, pairwise};
 use crate::render::RenderSettings;
 use crate::scene::Scene;

@@ -6,6 +6,7 @@
 
 pub mod distribution;
 pub mod estimate;
+pub mod isa;
 pub mod measure;
 pub mod mis;
 pub mod mixture;

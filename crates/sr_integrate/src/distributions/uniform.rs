@@ -1,5 +1,7 @@
 //! All values equally likely: on an interval, and in a box.
 
+use sr_sampling::isa::{Isa, Work};
+
 use super::line::{OnLine, below_one};
 use super::parameter::{ParameterError, width};
 use crate::columns::{Columns, ColumnsMut};
@@ -43,7 +45,7 @@ impl Cumulative for Uniform {
         ((x - self.low) / self.width).clamp(0.0, 1.0)
     }
 
-    #[inline]
+    #[inline(always)]
     fn icdf(&self, u: f64) -> f64 {
         (self.low + u * self.width).min(self.high)
     }
@@ -85,6 +87,24 @@ impl UniformBox {
     }
 }
 
+/// One coordinate of some points.
+struct Spread<'a> {
+    side: Uniform,
+    u: &'a [f64],
+    x: &'a mut [f64],
+}
+
+impl Work for Spread<'_> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run(self) {
+        for (&u, x) in self.u.iter().zip(self.x) {
+            *x = self.side.icdf(u);
+        }
+    }
+}
+
 impl Density for UniformBox {
     fn space(&self) -> Space {
         Space::real(self.sides.len())
@@ -96,9 +116,7 @@ impl Density for UniformBox {
 
     fn sample(&self, u: Columns<'_>, mut x: ColumnsMut<'_>, pdf: &mut [f64]) -> Result<(), DensityError> {
         for (j, side) in self.sides.iter().enumerate() {
-            for (&u, x) in u.column(j).iter().zip(x.column(j)) {
-                *x = side.icdf(u);
-            }
+            Isa::detect().run(Spread { side: *side, u: u.column(j), x: x.column(j) });
         }
         pdf.fill(self.density);
         Ok(())

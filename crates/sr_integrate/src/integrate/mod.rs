@@ -12,11 +12,13 @@
 
 mod integral;
 mod integrand;
+mod lanes;
 mod moments;
 mod plan;
 mod probe;
 mod resampled;
 mod rounds;
+mod sums;
 mod technique;
 
 use thiserror::Error;
@@ -28,7 +30,7 @@ pub use integrand::{Blocks, Integrand, Parallel};
 pub use plan::{MAX_REPLICATES, Plan, PlanError};
 pub use probe::look_for_holes;
 pub use resampled::{MAX_CANDIDATES, Resampled, Target};
-pub use rounds::{Progress, integrate};
+pub use rounds::{OnRound, Progress, integrate};
 pub use technique::{Combined, Single, Technique, TechniqueError};
 
 /// Why there is no integral.
@@ -68,12 +70,10 @@ pub enum IntegrateError {
         value: f64,
     },
     /// A value that is finite only before it is divided by the density.
-    #[error("f / p overflows at x = {}: f is {value}, and the density {pdf}", point(x))]
+    #[error("f / p overflows at x = {}, where the density is {pdf}", point(x))]
     Overflow {
         /// The point.
         x: Vec<f64>,
-        /// What f is there.
-        value: f64,
         /// The density there, or what takes its place.
         pdf: f64,
     },

@@ -1,5 +1,7 @@
 //! Means and covariances of vectors, without storing them and without cancellation.
 
+use super::lanes::{self, Summary};
+
 /// Of a stream of vectors: their number, mean, and sum of products of deviations from it.
 ///
 /// Merged as by Chan, Golub & LeVeque 1979.
@@ -16,12 +18,11 @@ impl Moments {
     pub fn of_columns(columns: &[f64], n: usize) -> Self {
         let m = columns.len().checked_div(n).unwrap_or(0);
         let column = |a: usize| &columns[a * n..(a + 1) * n];
-        let mean: Vec<f64> = (0..m).map(|a| column(a).iter().sum::<f64>() / n as f64).collect();
+        let mean: Vec<f64> = (0..m).map(|a| Summary::of(column(a)).sum / n as f64).collect();
         let mut products = vec![0.0; m * m];
         for a in 0..m {
             for b in a..m {
-                let sum: f64 =
-                    column(a).iter().zip(column(b)).map(|(x, y)| (x - mean[a]) * (y - mean[b])).sum();
+                let sum = lanes::products(column(a), mean[a], column(b), mean[b]);
                 (products[a * m + b], products[b * m + a]) = (sum, sum);
             }
         }

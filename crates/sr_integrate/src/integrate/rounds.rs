@@ -5,6 +5,7 @@
 //! that the result is the same for any number of threads.
 
 use std::error::Error;
+use std::mem::take;
 use std::time::Instant;
 
 use rayon::ThreadPool;
@@ -13,8 +14,8 @@ use rayon::prelude::*;
 use super::IntegrateError;
 use super::integral::Integral;
 use super::integrand::{Integrand, Parallel};
-use super::moments::Moments;
 use super::plan::Plan;
+use super::sums::{Sums, Tally};
 use super::technique::Technique;
 use crate::columns::{Columns, ColumnsMut};
 use crate::points::{Points, Sequence};
@@ -34,6 +35,9 @@ pub struct Progress {
     pub stderr: Vec<f64>,
 }
 
+/// What is told after each round, and may end everything by an error.
+pub type OnRound<'a> = dyn FnMut(&Progress) -> Result<(), Box<dyn Error + Send + Sync>> + 'a;
+
 /// A task draws at most so many points …
 const TASK_ROWS: u64 = 1024;
 /// … and uniforms.
@@ -51,8 +55,6 @@ struct Task {
 struct Drawn {
     x: Vec<f64>,
     factor: Vec<f64>,
-    /// Points that were asked for.
-    asked: u64,
 }
 
 /// Integrates, with points from one or more techniques.
@@ -71,7 +73,7 @@ pub fn integrate(
     integrand: &mut Integrand<'_>,
     plan: &Plan,
     pool: Option<&ThreadPool>,
-    on_round: &mut dyn FnMut(&Progress) -> Result<(), Box<dyn Error + Send + Sync>>,
+    on_round: &mut OnRound<'_>,
 ) -> Result<Integral, IntegrateError> {
     plan.check()?;
     assert!(!techniques.is_empty() && techniques.iter().all(|&(_, share)| share > 0));
@@ -105,14 +107,20 @@ pub fn integrate(
         let tasks = tasks(techniques, replicates, done, len);
         match integrand {
             Integrand::Parallel(f) => {
-                let work = |task: &Task| reduce(*f, techniques, &points, task);
-                for (task, reduced) in tasks.iter().zip(run(pool, &tasks, work)) {
-                    sums.add(task, reduced?, plan)?;
+                let work = |scratch: &mut Scratch, task: &Task| {
+                    reduce(*f, techniques, &points, task, scratch, independent)
+                };
+                for (task, tally) in tasks.iter().zip(run(pool, &tasks, work)) {
+                    sums.add([task.technique, task.replicate as usize], tally?, plan)?;
                 }
             }
             Integrand::Blocks(_) => {
-                let drawn = run(pool, &tasks, |task| draw(techniques, &points, task));
-                let drawn = drawn.into_iter().collect::<Result<Vec<_>, _>>()?;
+                let work = |scratch: &mut Scratch, task: &Task| {
+                    draw(techniques, &points, task, scratch)?;
+                    Ok(Drawn { x: take(&mut scratch.x), factor: take(&mut scratch.factor) })
+                };
+                let drawn = run(pool, &tasks, work);
+                let drawn = drawn.into_iter().collect::<Result<Vec<_>, IntegrateError>>()?;
                 add_block(integrand, techniques, &tasks, &drawn, &mut sums, plan)?;
             }
         }
@@ -120,7 +128,7 @@ pub fn integrate(
         let seconds = began.elapsed().as_secs_f64();
         let integral = sums.integral(seconds);
         on_round(&Progress {
-            n: sums.n,
+            n: sums.n(),
             n_max: plan.n.map(|_| target * a_unit),
             seconds,
             mean: integral.mean.clone(),
@@ -175,76 +183,68 @@ fn tasks(techniques: &[(&dyn Technique, u32)], replicates: u32, done: u64, len: 
 }
 
 /// Does the tasks, in the pool if there is one and it pays; the results are in their order.
-fn run<R: Send>(pool: Option<&ThreadPool>, tasks: &[Task], work: impl Fn(&Task) -> R + Sync) -> Vec<R> {
+fn run<R: Send>(
+    pool: Option<&ThreadPool>,
+    tasks: &[Task],
+    work: impl Fn(&mut Scratch, &Task) -> R + Sync,
+) -> Vec<R> {
     match pool {
-        Some(pool) if tasks.len() > 1 => pool.install(|| tasks.par_iter().map(&work).collect()),
-        _ => tasks.iter().map(work).collect(),
+        Some(pool) if tasks.len() > 1 => {
+            pool.install(|| tasks.par_iter().map_init(Scratch::default, &work).collect())
+        }
+        _ => {
+            let mut scratch = Scratch::default();
+            tasks.iter().map(|task| work(&mut scratch, task)).collect()
+        }
     }
 }
 
+/// Memory that a thread's tasks share.
+#[derive(Default)]
+struct Scratch {
+    u: Vec<f64>,
+    x: Vec<f64>,
+    factor: Vec<f64>,
+    f: Vec<f64>,
+}
+
+/// Draws a task's points into `scratch.x` and `scratch.factor`: only those that count.
 fn draw(
     techniques: &[(&dyn Technique, u32)],
     points: &[Points],
     task: &Task,
-) -> Result<Drawn, IntegrateError> {
+    scratch: &mut Scratch,
+) -> Result<(), IntegrateError> {
     let (technique, n) = (techniques[task.technique].0, task.len);
-    let mut u = vec![0.0; technique.uniforms() * n];
-    points[task.technique].fill(task.replicate, task.first, ColumnsMut::new(&mut u, n));
-    let mut x = vec![0.0; technique.space().dim() * n];
-    let mut factor = vec![0.0; n];
-    technique.draw(Columns::new(&u, n), ColumnsMut::new(&mut x, n), &mut factor)?;
+    let Scratch { u, x, factor, .. } = scratch;
+    u.resize(technique.uniforms() * n, 0.0);
+    x.resize(technique.space().dim() * n, 0.0);
+    factor.resize(n, 0.0);
+    points[task.technique].fill(task.replicate, task.first, ColumnsMut::new(u, n));
+    technique.draw(Columns::new(u, n), ColumnsMut::new(x, n), factor)?;
     if factor.iter().any(|&factor| !(factor > 0.0)) {
         let keep = |i: usize| factor[i] > 0.0;
-        x = x.chunks(n).flat_map(|column| (0..n).filter(|&i| keep(i)).map(|i| column[i])).collect();
+        *x = x.chunks(n).flat_map(|column| (0..n).filter(|&i| keep(i)).map(|i| column[i])).collect();
         factor.retain(|&factor| factor > 0.0);
     }
-    Ok(Drawn { x, factor, asked: n as u64 })
+    Ok(())
 }
 
-/// A block's terms f · factor and what is odd about them.
-#[derive(Default)]
-struct Terms {
-    /// Output after output; points that do not count are not there.
-    numbers: Vec<f64>,
-    outputs: usize,
-    asked: u64,
-    drawn: u64,
-    nans: u64,
-    /// The first point at which f, or f · factor, is not finite: the point, f, factor.
-    first: Option<(Vec<f64>, f64, f64)>,
-}
-
-fn terms(x: Columns<'_>, f: &[f64], factor: &[f64], outputs: usize, asked: u64) -> Terms {
-    let n = factor.len();
-    let mut numbers = Vec::with_capacity(n * outputs);
-    for column in f.chunks(n.max(1)) {
-        numbers.extend(column.iter().zip(factor).map(|(f, factor)| f * factor));
-    }
-    let mut terms = Terms { numbers, outputs, asked, drawn: n as u64, ..Terms::default() };
-    if terms.numbers.iter().sum::<f64>().is_finite() {
-        return terms;
-    }
-    for i in 0..n {
-        let bad = (0..outputs).find(|a| !terms.numbers[a * n + i].is_finite());
-        let Some(a) = bad else { continue };
-        terms.nans += 1;
-        terms.first.get_or_insert_with(|| (x.point(i), f[a * n + i], factor[i]));
-        (0..outputs).for_each(|a| terms.numbers[a * n + i] = 0.0);
-    }
-    terms
-}
-
+/// Draws, evaluates and adds up a task's points.
 fn reduce(
     f: &dyn Parallel,
     techniques: &[(&dyn Technique, u32)],
     points: &[Points],
     task: &Task,
-) -> Result<Terms, IntegrateError> {
-    let drawn = draw(techniques, points, task)?;
-    let x = Columns::new(&drawn.x, drawn.factor.len());
-    let mut values = vec![0.0; drawn.factor.len()];
-    f.eval(x, &mut values);
-    Ok(terms(x, &values, &drawn.factor, 1, drawn.asked))
+    scratch: &mut Scratch,
+    keep_moments: bool,
+) -> Result<Tally, IntegrateError> {
+    draw(techniques, points, task, scratch)?;
+    let Scratch { x, factor, f: values, .. } = scratch;
+    let x = Columns::new(x, factor.len());
+    values.resize(factor.len(), 0.0);
+    f.eval(x, values);
+    Ok(Tally::new(x, values, factor, 1, task.len, keep_moments))
 }
 
 /// Evaluates f at all points of a round in one block, and adds the terms of each task.
@@ -260,12 +260,12 @@ fn add_block(
     let n: usize = drawn.iter().map(|drawn| drawn.factor.len()).sum();
     let mut x = Vec::with_capacity(n * dim);
     for j in 0..dim {
-        for Drawn { x: part, factor, .. } in drawn {
+        for Drawn { x: part, factor } in drawn {
             x.extend_from_slice(&part[j * factor.len()..(j + 1) * factor.len()]);
         }
     }
     let mut f = Vec::new();
-    let outputs = if n > 0 { values_of(integrand, Columns::new(&x, n), &mut f)? } else { sums.outputs };
+    let outputs = if n > 0 { values_of(integrand, Columns::new(&x, n), &mut f)? } else { sums.outputs() };
     let mut from = 0;
     let mut part = Vec::new();
     for (task, drawn) in tasks.iter().zip(drawn) {
@@ -273,124 +273,9 @@ fn add_block(
         part.clear();
         (0..outputs).for_each(|a| part.extend_from_slice(&f[a * n + from..a * n + from + len]));
         let x = Columns::new(&drawn.x, len);
-        sums.add(task, terms(x, &part, &drawn.factor, outputs, drawn.asked), plan)?;
+        let tally = Tally::new(x, &mut part, &drawn.factor, outputs, task.len, sums.keeps_moments());
+        sums.add([task.technique, task.replicate as usize], tally, plan)?;
         from += len;
     }
     Ok(())
-}
-
-/// Everything that is remembered of the points so far.
-struct Sums {
-    independent: bool,
-    replicates: u32,
-    outputs: usize,
-    /// Of independent points: moments for each technique.
-    moments: Vec<Moments>,
-    /// Of others: for each technique and replicate, the number of points, and the sum of each output.
-    counts: Vec<u64>,
-    totals: Vec<Vec<f64>>,
-    n: u64,
-    nans: u64,
-    not_drawn: u64,
-    absolute: f64,
-    squares: f64,
-    largest: f64,
-}
-
-impl Sums {
-    fn new(techniques: usize, replicates: u32, independent: bool) -> Self {
-        let cells = techniques * replicates as usize;
-        Self {
-            independent,
-            replicates,
-            outputs: 0,
-            moments: vec![Moments::default(); techniques],
-            counts: vec![0; cells],
-            totals: vec![Vec::new(); cells],
-            n: 0,
-            nans: 0,
-            not_drawn: 0,
-            absolute: 0.0,
-            squares: 0.0,
-            largest: 0.0,
-        }
-    }
-
-    fn add(&mut self, task: &Task, terms: Terms, plan: &Plan) -> Result<(), IntegrateError> {
-        let Terms { mut numbers, outputs, asked, drawn, nans, first } = terms;
-        if let Some((x, value, factor)) = first.filter(|_| !plan.nan_as_zero) {
-            return Err(match value.is_finite() {
-                true => IntegrateError::Overflow { x, value, pdf: 1.0 / factor },
-                false => IntegrateError::NotFinite { x, value, count: nans, n: drawn },
-            });
-        }
-        if self.outputs == 0 {
-            self.outputs = outputs;
-        } else if outputs != self.outputs && drawn > 0 {
-            return Err(IntegrateError::Outputs { expected: self.outputs, found: outputs });
-        }
-        self.n += asked;
-        self.nans += nans;
-        self.not_drawn += asked - drawn;
-        let n = drawn as usize;
-        for t in &numbers[..n] {
-            self.absolute += t.abs();
-            self.squares += t * t;
-            self.largest = self.largest.max(t.abs());
-        }
-        if self.independent {
-            if asked > drawn {
-                let mut padded = Vec::with_capacity(asked as usize * self.outputs.max(1));
-                for a in 0..self.outputs.max(1) {
-                    padded.extend_from_slice(numbers.get(a * n..(a + 1) * n).unwrap_or_default());
-                    padded.resize((a + 1) * asked as usize, 0.0);
-                }
-                numbers = padded;
-            }
-            self.moments[task.technique].merge(&Moments::of_columns(&numbers, asked as usize));
-        } else {
-            let cell = task.technique * self.replicates as usize + task.replicate as usize;
-            self.counts[cell] += asked;
-            let totals = &mut self.totals[cell];
-            totals.resize(self.outputs, 0.0);
-            for (total, column) in totals.iter_mut().zip(numbers.chunks(n.max(1))) {
-                *total += column.iter().sum::<f64>();
-            }
-        }
-        Ok(())
-    }
-
-    /// What is known by now.
-    fn integral(&self, seconds: f64) -> Integral {
-        let m = self.outputs.max(1);
-        let (mean, covariance, dof) = if self.independent {
-            let (mut mean, mut covariance) = (vec![0.0; m], vec![0.0; m * m]);
-            for moments in &self.moments {
-                mean.iter_mut().zip(moments.mean()).for_each(|(sum, x)| *sum += x);
-                covariance.iter_mut().zip(moments.covariance_of_mean()).for_each(|(sum, x)| *sum += x);
-            }
-            (mean, covariance, self.moments.iter().map(|moments| moments.n()).min().unwrap_or(0))
-        } else {
-            let r = self.replicates as usize;
-            let mut means = vec![0.0; m * r];
-            for (cell, totals) in self.totals.iter().enumerate() {
-                for (a, total) in totals.iter().enumerate() {
-                    means[a * r + cell % r] += total / self.counts[cell] as f64;
-                }
-            }
-            let moments = Moments::of_columns(&means, r);
-            (moments.mean().to_vec(), moments.covariance_of_mean(), moments.n())
-        };
-        Integral {
-            mean,
-            covariance,
-            dof: dof.saturating_sub(1),
-            n: self.n,
-            nans: self.nans,
-            not_drawn: self.not_drawn,
-            largest_share: if self.absolute > 0.0 { self.largest / self.absolute } else { 0.0 },
-            effective_n: if self.squares > 0.0 { self.absolute * self.absolute / self.squares } else { 0.0 },
-            seconds,
-        }
-    }
 }

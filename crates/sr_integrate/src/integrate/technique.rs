@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use sr_sampling::Heuristic;
+use sr_sampling::isa::{Isa, Work};
 use thiserror::Error;
 
 use crate::columns::{Columns, ColumnsMut};
@@ -40,10 +41,22 @@ impl Technique for Single {
 
     fn draw(&self, u: Columns<'_>, x: ColumnsMut<'_>, factor: &mut [f64]) -> Result<(), DensityError> {
         self.0.sample(u, x, factor)?;
-        for factor in factor {
-            *factor = if *factor > 0.0 { 1.0 / *factor } else { 0.0 };
-        }
+        Isa::detect().run(Reciprocals(factor));
         Ok(())
+    }
+}
+
+/// 1 / p, and 0 where nothing is drawn.
+struct Reciprocals<'a>(&'a mut [f64]);
+
+impl Work for Reciprocals<'_> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run(self) {
+        for p in self.0 {
+            *p = if *p > 0.0 { 1.0 / *p } else { 0.0 };
+        }
     }
 }
 

@@ -32,6 +32,7 @@ impl Lattice {
     }
 
     /// Dimension `j` of points `first` and following.
+    #[inline(always)]
     pub fn fill(&self, key: u64, first: u32, j: usize, u: &mut [f64]) {
         let step = u64::from(self.vector[j % VECTOR.len()]) << (64 - MAX_BITS);
         let group = j / VECTOR.len();
@@ -52,6 +53,7 @@ impl Lattice {
 }
 
 /// A random order of the 2²⁰ points that maps each aligned block of 2ᵏ, which is a lattice, to one.
+#[inline(always)]
 fn scramble_high_first(place: u32, seed: u32) -> u32 {
     let top_first = place << (32 - MAX_BITS);
     scramble_low_first(top_first.reverse_bits(), seed).reverse_bits() >> (32 - MAX_BITS)

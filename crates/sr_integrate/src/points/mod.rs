@@ -20,6 +20,7 @@ mod unit;
 
 use std::str::FromStr;
 
+use sr_sampling::isa::{Isa, Work};
 use sr_sampling::sequence::mix::{derive_key, mix64};
 use thiserror::Error;
 
@@ -127,12 +128,32 @@ impl Points {
         let key = derive_key(self.key, replicate);
         for j in 0..if u.is_empty() { 0 } else { self.dim } {
             let key_j = derive_key(key, j as u32);
-            match &self.kind {
-                Kind::Independent => independent::fill(key_j, first, u.column(j)),
-                Kind::Stratified => stratified::fill(key, key_j, first as u32, [j, self.dim], u.column(j)),
-                Kind::Sobol(sobol) => sobol.fill(key_j, first as u32, j, u.column(j)),
-                Kind::Lattice(lattice) => lattice.fill(key_j, first as u32, j, u.column(j)),
-            }
+            Isa::detect().run(Fill { points: self, key, key_j, first, j, u: u.column(j) });
+        }
+    }
+}
+
+/// One dimension of some points.
+struct Fill<'a> {
+    points: &'a Points,
+    key: u64,
+    key_j: u64,
+    first: u64,
+    j: usize,
+    u: &'a mut [f64],
+}
+
+impl Work for Fill<'_> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { points, key, key_j, first, j, u } = self;
+        match &points.kind {
+            Kind::Independent => independent::fill(key_j, first, u),
+            Kind::Stratified => stratified::fill(key, key_j, first as u32, [j, points.dim], u),
+            Kind::Sobol(sobol) => sobol.fill(key_j, first as u32, j, u),
+            Kind::Lattice(lattice) => lattice.fill(key_j, first as u32, j, u),
         }
     }
 }

@@ -25,6 +25,8 @@ pub struct Sobol {
     /// For each dimension, what each bit of the index, from the lowest, contributes. Bits are reversed: the lowest is
     /// the first digit, which is the order in which the scramble wants them.
     directions: Vec<[u32; 32]>,
+    /// For each dimension, what the lowest bits of an index contribute together.
+    low: Vec<[u32; BLOCK as usize]>,
 }
 
 impl Sobol {
@@ -34,10 +36,13 @@ impl Sobol {
             0 => std::array::from_fn(|bit| 1 << bit),
             _ => directions(lines.next().expect("the table has this many lines")),
         });
-        Self { directions: directions.collect() }
+        let directions: Vec<_> = directions.collect();
+        let low = directions.iter().map(low_contributions).collect();
+        Self { directions, low }
     }
 
     /// Dimension `j` of points `first` and following.
+    #[inline(always)]
     pub fn fill(&self, key: u64, first: u32, j: usize, u: &mut [f64]) {
         let directions = &self.directions[j % TABLE_DIM];
         let seed = key as u32;
@@ -45,12 +50,7 @@ impl Sobol {
         // The order of the points of a group of dimensions; the first group keeps the natural one.
         let group = j / TABLE_DIM;
         let order = mix64(group as u64) as u32;
-        let mut low = [0_u32; BLOCK as usize];
-        for bit in 0..BLOCK.ilog2() as usize {
-            for i in 0..1 << bit {
-                low[i | 1 << bit] = low[i] ^ directions[bit];
-            }
-        }
+        let low = &self.low[j % TABLE_DIM];
         let mut done = 0;
         while done < u.len() {
             let index = first.wrapping_add(done as u32);
@@ -82,6 +82,17 @@ fn scrambled(reversed: u32, seed: u32, more: u64) -> f64 {
 /// The sum, without carries, of what the bits of an index contribute.
 fn contribution(directions: &[u32; 32], index: u32) -> u32 {
     (0..32).filter(|bit| index >> bit & 1 == 1).fold(0, |sum, bit| sum ^ directions[bit])
+}
+
+/// [`contribution`] of the indices below [`BLOCK`].
+fn low_contributions(directions: &[u32; 32]) -> [u32; BLOCK as usize] {
+    let mut low = [0; BLOCK as usize];
+    for bit in 0..BLOCK.ilog2() as usize {
+        for i in 0..1 << bit {
+            low[i | 1 << bit] = low[i] ^ directions[bit];
+        }
+    }
+    low
 }
 
 /// A line of the table to direction numbers, by the recurrence of Bratley & Fox 1988 (Algorithm 659).

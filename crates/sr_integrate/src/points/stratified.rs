@@ -12,12 +12,13 @@ use super::unit::to_unit;
 /// The coordinates of one dimension, `[j, dim]`: which of how many.
 ///
 /// - `key`: of all dimensions; `key_j`: of this one
+#[inline(always)]
 pub fn fill(key: u64, key_j: u64, first: u32, [j, dim]: [usize; 2], u: &mut [f64]) {
-    let digits = if j < 32 { (32 - j).div_ceil(dim) as u32 } else { 0 };
+    let digits = 32_usize.saturating_sub(j).div_ceil(dim) as u32;
     let beyond = if digits == 0 { u64::MAX } else { (1 << (64 - digits)) - 1 };
     for (i, u) in u.iter_mut().enumerate() {
         let index = first.wrapping_add(i as u32);
-        let cell = dealt(scramble_low_first(index, key as u32), j, dim).reverse_bits();
+        let cell = dealt(scramble_low_first(index, key as u32), [j, dim], digits).reverse_bits();
         // Which cell is the scramble's choice; where in it, nobody's.
         let within = mix64(key_j.wrapping_add(u64::from(index).wrapping_mul(0x9e37_79b9_7f4a_7c15)));
         *u = to_unit((u64::from(cell) << 32 & !beyond) | (within & beyond));
@@ -25,13 +26,9 @@ pub fn fill(key: u64, key_j: u64, first: u32, [j, dim]: [usize; 2], u: &mut [f64
 }
 
 /// Bits j, j + dim, j + 2 dim, … of the index, the first of them lowest.
-fn dealt(index: u32, j: usize, dim: usize) -> u32 {
-    let (mut bits, mut place, mut from) = (0, 0, j);
-    while from < 32 {
-        bits |= (index >> from & 1) << place;
-        (place, from) = (place + 1, from + dim);
-    }
-    bits
+#[inline(always)]
+fn dealt(index: u32, [j, dim]: [usize; 2], digits: u32) -> u32 {
+    (0..digits).fold(0, |bits, k| bits | (index >> (j + k as usize * dim) & 1) << k)
 }
 
 #[cfg(test)]

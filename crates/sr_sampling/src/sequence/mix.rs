@@ -6,7 +6,7 @@ const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 /// A bijection of 64-bit words whose every output bit depends on every input bit.
 ///
 /// The finaliser of SplitMix64 (Steele, Lea & Flood 2014; constants: Stafford's variant 13).
-#[inline]
+#[inline(always)]
 pub fn mix64(mut x: u64) -> u64 {
     x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -38,7 +38,7 @@ pub fn to_unit(bits: u32) -> f32 {
 ///
 /// The construction is Laine & Karras' (2011), with the steps and constants of Nathan Vegdahl,
 /// "Building a Better LK Hash" (2021). Even multipliers keep every step a bijection.
-#[inline]
+#[inline(always)]
 pub fn scramble_low_first(mut x: u32, seed: u32) -> u32 {
     x ^= x.wrapping_mul(0x3d20_adea);
     x = x.wrapping_add(seed);

@@ -2,11 +2,11 @@
 
 /// Proof that this processor has what a variant of [`Isa`] names: only [`Isa::available`] makes one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Detected(());
+pub struct Detected(());
 
 /// An instruction set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Isa {
+pub enum Isa {
     /// AVX-512 with the parts F, VL, DQ and BW, and all of [`Isa::Avx2`].
     #[cfg(target_arch = "x86_64")]
     Avx512(Detected),
@@ -19,7 +19,8 @@ pub(crate) enum Isa {
 
 /// What can be run with any instruction set. Nothing is fused or reassociated by compilers, so that results are the
 /// same bits.
-pub(crate) trait Work {
+pub trait Work {
+    /// What comes out.
     type Out;
     /// Must be `#[inline(always)]`, and all that it spends its time in must be inlined into it: only then is it
     /// compiled for the instruction set.

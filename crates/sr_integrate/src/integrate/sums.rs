@@ -1,0 +1,213 @@
+//! What is remembered of points: of a task's, and of all so far.
+
+use super::IntegrateError;
+use super::integral::Integral;
+use super::lanes::Summary;
+use super::moments::Moments;
+use super::plan::Plan;
+use crate::columns::Columns;
+
+/// A task's terms f · factor, added up, and what is odd about them.
+pub struct Tally {
+    outputs: usize,
+    /// The sum of each output.
+    sums: Vec<f64>,
+    /// Of the terms as samples, zeros included; empty unless they are independent.
+    moments: Moments,
+    /// Of the first output.
+    summary: Summary,
+    asked: u64,
+    drawn: u64,
+    nans: u64,
+    /// The first point at which f is not finite, or f · factor if that alone is not.
+    first: Option<Odd>,
+}
+
+/// A point that cannot be added.
+struct Odd {
+    x: Vec<f64>,
+    /// What is not finite there.
+    value: f64,
+    /// If that is f · factor: the factor.
+    factor: Option<f64>,
+}
+
+impl Tally {
+    /// - `f`: the values of each output, one after the other, at the points `x`; is overwritten
+    /// - `factor`: by what they are multiplied
+    /// - `asked`: how many points were to be drawn; the others count as 0
+    pub fn new(
+        x: Columns<'_>,
+        f: &mut [f64],
+        factor: &[f64],
+        outputs: usize,
+        asked: usize,
+        keep_moments: bool,
+    ) -> Self {
+        let n = factor.len();
+        let mut tally = Self {
+            outputs,
+            sums: Vec::new(),
+            moments: Moments::default(),
+            summary: Summary::default(),
+            asked: asked as u64,
+            drawn: n as u64,
+            nans: 0,
+            first: None,
+        };
+        if n > 0 {
+            tally.remove_odd(x, f, None);
+            for column in f.chunks_mut(n) {
+                column.iter_mut().zip(factor).for_each(|(f, factor)| *f *= factor);
+            }
+            tally.remove_odd(x, f, Some(factor));
+            tally.summary = Summary::of(&f[..n]);
+        }
+        if !keep_moments {
+            tally.sums = f.chunks(n.max(1)).map(|column| Summary::of(column).sum).collect();
+        } else if n == asked {
+            tally.moments = Moments::of_columns(f, n);
+        } else {
+            let mut padded = Vec::with_capacity(asked * outputs.max(1));
+            for a in 0..outputs.max(1) {
+                padded.extend_from_slice(f.get(a * n..(a + 1) * n).unwrap_or_default());
+                padded.resize((a + 1) * asked, 0.0);
+            }
+            tally.moments = Moments::of_columns(&padded, asked);
+        }
+        tally
+    }
+
+    /// Counts points with values that are not finite, and makes these 0. `factor`: by what they were multiplied.
+    fn remove_odd(&mut self, x: Columns<'_>, values: &mut [f64], factor: Option<&[f64]>) {
+        if Summary::of(values).sum.is_finite() {
+            return;
+        }
+        let n = x.len();
+        for i in 0..n {
+            let odd = (0..self.outputs).map(|a| values[a * n + i]).find(|value| !value.is_finite());
+            let Some(value) = odd else { continue };
+            self.nans += 1;
+            let factor = factor.map(|factor| factor[i]);
+            self.first.get_or_insert_with(|| Odd { x: x.point(i), value, factor });
+            (0..self.outputs).for_each(|a| values[a * n + i] = 0.0);
+        }
+    }
+}
+
+/// Everything that is remembered of the points so far.
+pub struct Sums {
+    independent: bool,
+    replicates: usize,
+    outputs: usize,
+    /// Of independent points: moments for each technique.
+    moments: Vec<Moments>,
+    /// Of others: for each technique and replicate, the number of points, and the sum of each output.
+    counts: Vec<u64>,
+    totals: Vec<Vec<f64>>,
+    n: u64,
+    nans: u64,
+    not_drawn: u64,
+    summary: Summary,
+}
+
+impl Sums {
+    pub fn new(techniques: usize, replicates: u32, independent: bool) -> Self {
+        let cells = techniques * replicates as usize;
+        Self {
+            independent,
+            replicates: replicates as usize,
+            outputs: 0,
+            moments: vec![Moments::default(); techniques],
+            counts: vec![0; cells],
+            totals: vec![Vec::new(); cells],
+            n: 0,
+            nans: 0,
+            not_drawn: 0,
+            summary: Summary::default(),
+        }
+    }
+
+    /// The number of points so far.
+    pub fn n(&self) -> u64 {
+        self.n
+    }
+
+    /// The number of outputs, once it is known.
+    pub fn outputs(&self) -> usize {
+        self.outputs
+    }
+
+    /// Are moments wanted of tallies, rather than sums?
+    pub fn keeps_moments(&self) -> bool {
+        self.independent
+    }
+
+    /// Adds a task's points, of `[technique, replicate]`.
+    ///
+    /// # Errors
+    /// If a term is not finite and the plan does not take that for 0, or the number of outputs changed.
+    pub fn add(&mut self, [t, r]: [usize; 2], tally: Tally, plan: &Plan) -> Result<(), IntegrateError> {
+        let Tally { outputs, sums, moments, summary, asked, drawn, nans, first } = tally;
+        if let Some(Odd { x, value, factor }) = first.filter(|_| !plan.nan_as_zero) {
+            return Err(match factor {
+                Some(factor) => IntegrateError::Overflow { x, pdf: 1.0 / factor },
+                None => IntegrateError::NotFinite { x, value, count: nans, n: drawn },
+            });
+        }
+        if self.outputs == 0 {
+            self.outputs = outputs;
+        } else if outputs != self.outputs && drawn > 0 {
+            return Err(IntegrateError::Outputs { expected: self.outputs, found: outputs });
+        }
+        self.n += asked;
+        self.nans += nans;
+        self.not_drawn += asked - drawn;
+        self.summary.merge(&summary);
+        if self.independent {
+            self.moments[t].merge(&moments);
+            return Ok(());
+        }
+        let cell = t * self.replicates + r;
+        self.counts[cell] += asked;
+        let totals = &mut self.totals[cell];
+        totals.resize(self.outputs, 0.0);
+        totals.iter_mut().zip(sums).for_each(|(total, sum)| *total += sum);
+        Ok(())
+    }
+
+    /// What is known by now.
+    pub fn integral(&self, seconds: f64) -> Integral {
+        let m = self.outputs.max(1);
+        let (mean, covariance, n) = if self.independent {
+            let (mut mean, mut covariance) = (vec![0.0; m], vec![0.0; m * m]);
+            for moments in &self.moments {
+                mean.iter_mut().zip(moments.mean()).for_each(|(sum, x)| *sum += x);
+                covariance.iter_mut().zip(moments.covariance_of_mean()).for_each(|(sum, x)| *sum += x);
+            }
+            (mean, covariance, self.moments.iter().map(Moments::n).min().unwrap_or(0))
+        } else {
+            let r = self.replicates;
+            let mut means = vec![0.0; m * r];
+            for (cell, totals) in self.totals.iter().enumerate() {
+                for (a, total) in totals.iter().enumerate() {
+                    means[a * r + cell % r] += total / self.counts[cell] as f64;
+                }
+            }
+            let moments = Moments::of_columns(&means, r);
+            (moments.mean().to_vec(), moments.covariance_of_mean(), moments.n())
+        };
+        let Summary { absolute, squares, largest, .. } = self.summary;
+        Integral {
+            mean,
+            covariance,
+            dof: n.saturating_sub(1),
+            n: self.n,
+            nans: self.nans,
+            not_drawn: self.not_drawn,
+            largest_share: if absolute > 0.0 { largest / absolute } else { 0.0 },
+            effective_n: if squares > 0.0 { absolute * absolute / squares } else { 0.0 },
+            seconds,
+        }
+    }
+}
