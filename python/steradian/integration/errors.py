@@ -8,7 +8,8 @@ from collections.abc import Sequence
 class IntegrandError(ValueError):
     """The integrand returned a number that is infinite or none.
 
-    ``x``: the first point where it does; ``value``: what it returned there; ``count``: at how many points of the batch.
+    ``x``: the first point where it does; ``value``: what it returned there; ``count``: at how many
+    points so far.
     """
 
     def __init__(self, message: str, x: Sequence[float] = (), value: float = float("nan"), count: int = 0) -> None:

@@ -49,6 +49,8 @@ def checked(f: Callable[[Array], Any], dim: int, name: str) -> Callable[[Array],
                 )
             raise
         try:
+            if np.iscomplexobj(result):
+                raise TypeError("complex numbers are integrated as their real and imaginary parts, (n, 2)")
             values = np.asarray(result, dtype=np.float64)
         except (TypeError, ValueError) as error:
             raise TypeError(

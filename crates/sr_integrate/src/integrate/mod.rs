@@ -52,9 +52,9 @@ pub enum IntegrateError {
         x: Vec<f64>,
         /// What f is there.
         value: f64,
-        /// How many such points there are among those of the round that was evaluated.
+        /// How many such points there are.
         count: u64,
-        /// The points of that round.
+        /// Among how many, which were evaluated so far.
         n: u64,
     },
     /// The density is 0 where the integrand is not.

@@ -111,7 +111,7 @@ pub fn integrate(
                     reduce(*f, techniques, &points, task, scratch, independent)
                 };
                 for (task, tally) in tasks.iter().zip(run(pool, &tasks, work)) {
-                    sums.add([task.technique, task.replicate as usize], tally?, plan)?;
+                    sums.add([task.technique, task.replicate as usize], tally?)?;
                 }
             }
             Integrand::Blocks(_) => {
@@ -121,9 +121,10 @@ pub fn integrate(
                 };
                 let drawn = run(pool, &tasks, work);
                 let drawn = drawn.into_iter().collect::<Result<Vec<_>, IntegrateError>>()?;
-                add_block(integrand, techniques, &tasks, &drawn, &mut sums, plan)?;
+                add_block(integrand, techniques, &tasks, &drawn, &mut sums)?;
             }
         }
+        sums.check(plan)?;
         done += len;
         let seconds = began.elapsed().as_secs_f64();
         let integral = sums.integral(seconds);
@@ -254,7 +255,6 @@ fn add_block(
     tasks: &[Task],
     drawn: &[Drawn],
     sums: &mut Sums,
-    plan: &Plan,
 ) -> Result<(), IntegrateError> {
     let dim = techniques[0].0.space().dim();
     let n: usize = drawn.iter().map(|drawn| drawn.factor.len()).sum();
@@ -274,7 +274,7 @@ fn add_block(
         (0..outputs).for_each(|a| part.extend_from_slice(&f[a * n + from..a * n + from + len]));
         let x = Columns::new(&drawn.x, len);
         let tally = Tally::new(x, &mut part, &drawn.factor, outputs, task.len, sums.keeps_moments());
-        sums.add([task.technique, task.replicate as usize], tally, plan)?;
+        sums.add([task.technique, task.replicate as usize], tally)?;
         from += len;
     }
     Ok(())

@@ -109,6 +109,7 @@ pub struct Sums {
     nans: u64,
     not_drawn: u64,
     summary: Summary,
+    first: Option<Odd>,
 }
 
 impl Sums {
@@ -125,7 +126,21 @@ impl Sums {
             nans: 0,
             not_drawn: 0,
             summary: Summary::default(),
+            first: None,
         }
+    }
+
+    /// # Errors
+    /// If a term is not finite and the plan does not take that for 0.
+    pub fn check(&self, plan: &Plan) -> Result<(), IntegrateError> {
+        let Some(Odd { x, value, factor }) = self.first.as_ref().filter(|_| !plan.nan_as_zero) else {
+            return Ok(());
+        };
+        let x = x.clone();
+        Err(match factor {
+            Some(factor) => IntegrateError::Overflow { x, pdf: 1.0 / factor },
+            None => IntegrateError::NotFinite { x, value: *value, count: self.nans, n: self.n },
+        })
     }
 
     /// The number of points so far.
@@ -146,15 +161,9 @@ impl Sums {
     /// Adds a task's points, of `[technique, replicate]`.
     ///
     /// # Errors
-    /// If a term is not finite and the plan does not take that for 0, or the number of outputs changed.
-    pub fn add(&mut self, [t, r]: [usize; 2], tally: Tally, plan: &Plan) -> Result<(), IntegrateError> {
+    /// If the number of outputs changed.
+    pub fn add(&mut self, [t, r]: [usize; 2], tally: Tally) -> Result<(), IntegrateError> {
         let Tally { outputs, sums, moments, summary, asked, drawn, nans, first } = tally;
-        if let Some(Odd { x, value, factor }) = first.filter(|_| !plan.nan_as_zero) {
-            return Err(match factor {
-                Some(factor) => IntegrateError::Overflow { x, pdf: 1.0 / factor },
-                None => IntegrateError::NotFinite { x, value, count: nans, n: drawn },
-            });
-        }
         if self.outputs == 0 {
             self.outputs = outputs;
         } else if outputs != self.outputs && drawn > 0 {
@@ -162,6 +171,9 @@ impl Sums {
         }
         self.n += asked;
         self.nans += nans;
+        if self.first.is_none() {
+            self.first = first;
+        }
         self.not_drawn += asked - drawn;
         self.summary.merge(&summary);
         if self.independent {
