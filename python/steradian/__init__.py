@@ -36,29 +36,63 @@ from steradian.transform import Transform
 if TYPE_CHECKING:
     from steradian.distributions import (
         Distribution as Distribution,
+    )
+    from steradian.distributions import (
         Exponential as Exponential,
+    )
+    from steradian.distributions import (
         Linear as Linear,
+    )
+    from steradian.distributions import (
         Mixture as Mixture,
+    )
+    from steradian.distributions import (
         Normal as Normal,
+    )
+    from steradian.distributions import (
         Power as Power,
+    )
+    from steradian.distributions import (
         Product as Product,
+    )
+    from steradian.distributions import (
         Samples as Samples,
+    )
+    from steradian.distributions import (
         Tent as Tent,
+    )
+    from steradian.distributions import (
         Truncated as Truncated,
+    )
+    from steradian.distributions import (
         Uniform as Uniform,
     )
     from steradian.integration import (
         Estimate as Estimate,
+    )
+    from steradian.integration import (
         IntegrandError as IntegrandError,
+    )
+    from steradian.integration import (
         IntegrationProgress as IntegrationProgress,
+    )
+    from steradian.integration import (
         IntegrationWarning as IntegrationWarning,
+    )
+    from steradian.integration import (
         SupportError as SupportError,
+    )
+    from steradian.integration import (
         integrate as integrate,
+    )
+    from steradian.integration import (
         mis_integrate as mis_integrate,
+    )
+    from steradian.integration import (
         ris_integrate as ris_integrate,
     )
 
-# Modules that need NumPy, which takes as long to load as everything else: loaded when one of their names is used.
+# Modules that need NumPy, which takes as long to load as everything else: loaded when a name is used.
 _LAZY = ("steradian.distributions", "steradian.integration")
 
 __all__ = [

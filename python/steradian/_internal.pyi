@@ -114,3 +114,94 @@ def encode_png(
     image: Image, metadata_values: Sequence[tuple[str, str | int | float]], exposure: float, tone: str
 ) -> bytes:
     """PNG data."""
+
+class Density:
+    """A density and how to sample it. Points are rows, (n, dim), in any order of memory."""
+
+    def space(self) -> str:
+        """What it is a density of."""
+    def is_real(self) -> bool:
+        """Is every coordinate a length of its own?"""
+    def dim(self) -> int:
+        """Coordinates of a point."""
+    def uniforms(self) -> int:
+        """Uniforms that a sample consumes."""
+    def sample(self, u: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """(n, uniforms) → points (n, dim) and densities (n,), 0 where nothing is drawn."""
+    def pdf(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """(n, dim) → (n,)."""
+    def has_inverse(self) -> bool:
+        """Can samples be traced back to their uniforms?"""
+    def invert(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """(n, dim) → (n, uniforms); NaN outside the support. TypeError if that is not possible."""
+    def has_cdf(self) -> bool:
+        """Is the distribution function known?"""
+    def cdf(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """(n,) → (n,). TypeError if it is not known."""
+    def icdf(self, u: NDArray[np.float64]) -> NDArray[np.float64]:
+        """(n,) → (n,). TypeError if it is not known."""
+    def support(self) -> list[tuple[float, float]]:
+        """(low, high) of each coordinate."""
+    def domain(self) -> list[tuple[float, float]] | None:
+        """Where an integrand should be covered, if that is known."""
+    def mean(self) -> list[float] | None:
+        """The expected point, if it is known."""
+
+class Native:
+    """A compiled function, which any thread may call."""
+
+    def __init__(self, address: int, call: str, data: int, owner: object) -> None:
+        """``address`` must be that of a function of the kind ``call``, which ``owner`` keeps alive."""
+    def with_data(self, data: int) -> Native:
+        """The same with the address of its data."""
+
+class Integral:
+    """An integral, or several, with what is known of their errors."""
+
+    mean: list[float]
+    covariance: list[float]
+    dof: int
+    n: int
+    nans: int
+    not_drawn: int
+    largest_share: float
+    effective_n: float
+    seconds: float
+
+def integrate(density: Density, f: object, request: Mapping[str, Any]) -> Integral:
+    """``request``: the fields of ``Request`` in crates/sr_python/src/integrate/run.rs."""
+
+def mis_integrate(
+    densities: Sequence[Density], counts: Sequence[int], heuristic: str, f: object, request: Mapping[str, Any]
+) -> Integral:
+    """As ``integrate``, with samples of several densities."""
+
+def ris_integrate(
+    source: Density, target: object, candidates: int, f: object, request: Mapping[str, Any]
+) -> Integral:
+    """As ``integrate``, with samples that are chosen among candidates."""
+
+def points(sequence: str, dim: int, n: int, seed: int, replicate: int, first: int) -> NDArray[np.float64]:
+    """(n, dim) points of a sequence."""
+
+def student_t(p: float, dof: float) -> float:
+    """The number that Student's t stays below with probability ``p``."""
+
+def format_uncertain(mean: float, stderr: float) -> str:
+    """``25.0013 ± 0.0046``."""
+
+def foreign_density(
+    object: object, space: str, dim: int, uniforms: int, support: Sequence[tuple[float, float]]
+) -> Density:
+    """A density whose ``_sample_rows`` and ``_pdf_rows`` are Python's."""
+
+def uniform(low: float, high: float) -> Density: ...
+def uniform_box(sides: Sequence[tuple[float, float]]) -> Density: ...
+def linear(low: float, high: float, at_low: float, at_high: float) -> Density: ...
+def tent(low: float, peak: float, high: float) -> Density: ...
+def exponential(rate: float) -> Density: ...
+def normal(mean: float, sd: float) -> Density: ...
+def power(exponent: float, low: float, high: float) -> Density: ...
+def truncated(of: Density, low: float, high: float) -> Density: ...
+def product(factors: Sequence[Density]) -> Density: ...
+def mixture(components: Sequence[Density], weights: Sequence[float]) -> Density: ...

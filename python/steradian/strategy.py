@@ -20,6 +20,10 @@ class Strategy:
     """One density, or several combined by multiple importance sampling.
 
     Made by :func:`mis`, :func:`strategy`, or from a :class:`Density`; equal if their expressions are.
+
+    >>> import steradian as sr
+    >>> sr.mis(sr.bsdf, sr.light) == sr.strategy("mis(bsdf, light)")
+    True
     """
 
     __slots__ = ("_expression",)
@@ -48,6 +52,10 @@ class Density:
 
     Weights are checked when the density is used or printed, so that ``0.5 * sr.cosine`` can be on its way to
     ``0.5 * sr.cosine + 0.5 * sr.light``.
+
+    >>> import steradian as sr
+    >>> print(0.5 * sr.cosine + 0.5 * sr.light)
+    0.5 cosine + 0.5 light
     """
 
     __slots__ = ("_terms",)
@@ -127,6 +135,10 @@ def mis(*techniques: Density, heuristic: str = "power") -> Strategy:
 
     ``heuristic``: ``"power"`` (β = 2), ``"balance"``, ``"cutoff"`` or ``"maximum"``.
     Raises ValueError for no technique, too many, weights that do not sum to 1, or an unknown heuristic.
+
+    >>> import steradian as sr
+    >>> sr.mis(sr.bsdf, sr.light, heuristic="balance")
+    sr.strategy('mis(bsdf, light, heuristic=balance)')
     """
     for technique in techniques:
         if not isinstance(technique, Density):
@@ -144,6 +156,10 @@ def strategy(value: str | Density | Strategy) -> Strategy:
     """A strategy from an expression, such as ``"0.5 cosine + 0.5 light"``, or from a density.
 
     Raises ValueError, with the column and the remedy, if it is none.
+
+    >>> import steradian as sr
+    >>> sr.strategy(0.5 * sr.cosine + 0.5 * sr.light)
+    sr.strategy('0.5 cosine + 0.5 light')
     """
     if isinstance(value, Strategy):
         return value

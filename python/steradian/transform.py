@@ -18,6 +18,10 @@ class Transform:
 
     ``Transform.translate((0, 1, 0)) @ Transform.scale(2)`` scales first. A placement in a scene dictionary
     may be a Transform or a 4×4 array.
+
+    >>> import steradian as sr
+    >>> (sr.Transform.translate((0, 1, 0)) @ sr.Transform.scale(2)).matrix[1]
+    array([0., 2., 0., 1.])
     """
 
     __slots__ = ("matrix",)

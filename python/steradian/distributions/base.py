@@ -30,8 +30,9 @@ class Samples(NamedTuple):
 class Distribution(ABC):
     """A probability density that can be sampled and evaluated.
 
-    To bring your own, give a subclass ``sample`` and ``pdf`` over NumPy arrays, and, where they differ from these,
-    the attributes ``dim``, ``uniforms``, ``space`` and ``support``. It then works wherever the built-in ones do.
+    To bring your own, give a subclass ``sample`` and ``pdf`` over NumPy arrays, and, where they differ from
+    these, the attributes ``dim``, ``uniforms``, ``space`` and ``support``. It then works wherever the
+    built-in ones do.
 
     >>> import numpy as np, steradian as sr
     >>> class Triangle(sr.Distribution):
@@ -51,19 +52,25 @@ class Distribution(ABC):
     """Uniforms in [0, 1) that a sample consumes."""
 
     space: str | None = None
-    """What the density is a density of: ``"solid angle"``, ``"surface area"``, ``"counting"``, or ``None`` for length,
-    area or volume, by ``dim``."""
+    """What the density is a density of.
+
+    ``"solid angle"``, ``"surface area"``, ``"counting"``, or ``None`` for length, area or volume, by ``dim``.
+    """
 
     @abstractmethod
     def sample(self, u: ArrayLike) -> Samples:
         """Draws a point from each row of uniforms.
 
-        ``u``: (n,) or (n, uniforms), each in [0, 1). Returns points and their densities; see :class:`Samples`.
+        ``u``: (n,) or (n, uniforms), each in [0, 1). Returns points and their densities; see
+        :class:`Samples`.
         """
 
     @abstractmethod
     def pdf(self, x: ArrayLike) -> Array:
-        """The density at points: (...,) for one coordinate, (..., dim) otherwise → (...,); 0 outside the support."""
+        """The density at points, (...,) for one coordinate, (..., dim) otherwise → (...,).
+
+        0 outside the support.
+        """
 
     @property
     def support(self) -> Array:
@@ -76,7 +83,9 @@ class Distribution(ABC):
         return None
 
     def draw(self, n: int, seed: int = 0, sequence: str = "independent") -> Samples:
-        """``n`` samples from uniforms of a sequence: ``"independent"``, ``"stratified"``, ``"sobol"`` or ``"lattice"``.
+        """``n`` samples from the uniforms of a sequence.
+
+        That is ``"independent"``, ``"stratified"``, ``"sobol"`` or ``"lattice"``.
 
         >>> import steradian as sr
         >>> sr.Uniform(2, 3).draw(1000).value.mean().round(1)
@@ -145,12 +154,15 @@ class Compiled(Distribution):
         return Samples(value[:, 0] if self.dim == 1 else value, pdf)
 
     def pdf(self, x: ArrayLike) -> Array:
-        """The density at points: (...,) for one coordinate, (..., dim) otherwise → (...,); 0 outside the support."""
+        """The density at points, (...,) for one coordinate, (..., dim) otherwise → (...,).
+
+        0 outside the support.
+        """
         points = np.asarray(x, float)
         shape = points.shape if self.dim == 1 else points.shape[:-1]
         if self.dim > 1 and (points.ndim == 0 or points.shape[-1] != self.dim):
             raise ValueError(f"x has shape {points.shape}; the last axis must have {self.dim} coordinates")
-        return self._core.pdf(points.reshape(-1, self.dim)).reshape(shape)
+        return self._core.pdf(points.reshape(-1, self.dim)).reshape(shape)[()]
 
     def invert(self, x: ArrayLike) -> Array:
         """The uniforms that ``sample`` maps to points, (n,) or (n, dim) → (n,) or (n, uniforms).
@@ -163,7 +175,7 @@ class Compiled(Distribution):
     def cdf(self, x: ArrayLike) -> Array:
         """The probability of a value of at most ``x``, any shape. Raises TypeError if that is not known."""
         points = np.asarray(x, float)
-        return self._core.cdf(points.reshape(-1)).reshape(points.shape)
+        return self._core.cdf(points.reshape(-1)).reshape(points.shape)[()]
 
     def icdf(self, u: ArrayLike) -> Array:
         """The value below which a share ``u`` in [0, 1] of the probability lies, any shape.
@@ -172,8 +184,10 @@ class Compiled(Distribution):
         """
         shares = np.asarray(u, float)
         if not np.all((shares >= 0) & (shares <= 1)):
-            raise ValueError(f"u holds {shares[~((shares >= 0) & (shares <= 1))].flat[0]}; shares are in [0, 1]")
-        return self._core.icdf(shares.reshape(-1)).reshape(shares.shape)
+            raise ValueError(
+                f"u holds {shares[~((shares >= 0) & (shares <= 1))].flat[0]}; shares are in [0, 1]"
+            )
+        return self._core.icdf(shares.reshape(-1)).reshape(shares.shape)[()]
 
     @property
     def support(self) -> Array:
@@ -237,12 +251,14 @@ def as_distribution(value: object, argument: str = "over") -> Distribution:
     except (TypeError, ValueError):
         box = np.empty(0)
     if box.ndim != 2 or box.shape[1] != 2 or len(box) == 0:
-        raise TypeError(f"{argument} must be a distribution, or (low, high) for each dimension, not {value!r}")
+        raise TypeError(
+            f"{argument} must be a distribution, or (low, high) for each dimension, not {value!r}"
+        )
     return Uniform(box[:, 0], box[:, 1]) if len(box) > 1 else Uniform(box[0, 0], box[0, 1])
 
 
 def as_rows(argument: str, value: ArrayLike, width: int) -> Array:
-    """``value`` as (n, width) numbers; (n,) will do if ``width`` is 1. Raises ValueError naming ``argument``."""
+    """``value`` as (n, width) numbers; (n,) will do if ``width`` is 1. Raises ValueError that names it."""
     array = np.asarray(value, float)
     if array.ndim < 2 and width == 1:
         array = array.reshape(-1, 1)
@@ -253,13 +269,14 @@ def as_rows(argument: str, value: ArrayLike, width: int) -> Array:
 
 
 def _checked(what: str, value: object, n: int, width: int) -> Array:
-    """The result of somebody's method as (n, width) numbers, or a ValueError that says what is wrong with it."""
+    """The result of somebody's method as (n, width) numbers, or a ValueError that says what is wrong."""
     array = np.asarray(value, float)
-    if array.shape == (n,) and width == 1:
+    found = array.shape
+    if found == (n,) and width == 1:
         array = array.reshape(n, 1)
     if array.shape != (n, width):
         wanted = f"({n}, {width})" if width > 1 else f"({n},)"
-        raise ValueError(f"{what} returned shape {np.shape(value)}; it must be {wanted}")
+        raise ValueError(f"{what} returned shape {found}; it must be {wanted}")
     return array
 
 

@@ -11,8 +11,8 @@ from steradian.distributions.base import Compiled, Distribution
 class Product(Compiled):
     """Independent coordinates: the product of densities of lengths, areas or volumes.
 
-    ``factors``: distributions, whose coordinates follow one another. ``p * q`` is short for ``Product([p, q])``.
-    Raises ValueError if there is none, or one is a density of something else, such as solid angle.
+    ``factors``: distributions, whose coordinates follow one another. ``p * q`` is short for ``Product([p,
+    q])``. Raises ValueError if there is none, or one is a density of something else, such as solid angle.
 
     >>> import steradian as sr
     >>> (sr.Uniform(0, 2) * sr.Linear()).pdf([[0.5, 0.5]])
@@ -27,8 +27,9 @@ class Product(Compiled):
 class Mixture(Compiled):
     """p(x) = Σᵢ wᵢ pᵢ(x): one of several distributions of the same space is chosen, and sampled.
 
-    ``components``: the distributions; ``weights``: not negative, summing to 1; equal ones if not given.
-    ``0.3 * p + 0.7 * q`` is short for ``Mixture([p, q], [0.3, 0.7])``. Raises ValueError naming the weight that is wrong.
+    ``components``: the distributions; ``weights``: not negative, summing to 1; equal ones if not given. ``0.3
+    * p + 0.7 * q`` is short for ``Mixture([p, q], [0.3, 0.7])``. Raises ValueError naming the weight that is
+    wrong.
 
     >>> import steradian as sr
     >>> half = 0.5 * sr.Uniform(0, 1) + 0.5 * sr.Uniform(0, 2)
@@ -41,4 +42,6 @@ class Mixture(Compiled):
         if weights is None:
             weights = [1 / max(len(components), 1)] * len(components)
         weights = [float(weight) for weight in weights]
-        super().__init__(_internal.mixture([p._core for p in components], weights), components=components, weights=weights)
+        super().__init__(
+            _internal.mixture([p._core for p in components], weights), components=components, weights=weights
+        )

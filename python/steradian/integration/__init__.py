@@ -2,7 +2,7 @@
 
 from steradian.integration.errors import IntegrandError, IntegrationWarning, SupportError
 from steradian.integration.estimate import Estimate
-from steradian.integration.integrate import IntegrationProgress, integrate, mis_integrate, ris_integrate
+from steradian.integration.estimators import IntegrationProgress, integrate, mis_integrate, ris_integrate
 
 __all__ = [
     "Estimate",

@@ -12,7 +12,9 @@ class IntegrandError(ValueError):
     points so far.
     """
 
-    def __init__(self, message: str, x: Sequence[float] = (), value: float = float("nan"), count: int = 0) -> None:
+    def __init__(
+        self, message: str, x: Sequence[float] = (), value: float = float("nan"), count: int = 0
+    ) -> None:
         super().__init__(message)
         self.x = list(x)
         self.value = value
@@ -25,7 +27,9 @@ class SupportError(ValueError):
     ``x``: such a point; ``value``: the integrand there.
     """
 
-    def __init__(self, message: str, x: Sequence[float] = (), value: float = float("nan"), count: int = 1) -> None:
+    def __init__(
+        self, message: str, x: Sequence[float] = (), value: float = float("nan"), count: int = 1
+    ) -> None:
         super().__init__(message)
         self.x = list(x)
         self.value = value

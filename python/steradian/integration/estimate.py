@@ -18,6 +18,11 @@ class Estimate:
     """What is known of an integral: ``25.0013 ± 0.0046 (n = 100000)``.
 
     Numbers for one integral, arrays (m,) for an integrand that returns m values a point.
+
+    >>> import steradian as sr
+    >>> estimate = sr.integrate(lambda x: 2 * x, over=sr.Uniform(0, 5), n=4096)
+    >>> abs(estimate.mean - 25) < 5 * estimate.stderr
+    True
     """
 
     mean: float | Array
@@ -63,7 +68,8 @@ class Estimate:
     def __str__(self) -> str:
         if np.ndim(self.mean) == 0:
             return f"{format_uncertain(float(self.mean), float(self.stderr))} (n = {self.n})"
-        parts = (format_uncertain(float(m), float(s)) for m, s in zip(self.mean, self.stderr, strict=True))
+        both = zip(np.ravel(self.mean), np.ravel(self.stderr), strict=True)
+        parts = (format_uncertain(float(mean), float(stderr)) for mean, stderr in both)
         return f"[{', '.join(parts)}] (n = {self.n})"
 
 

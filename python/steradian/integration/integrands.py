@@ -14,17 +14,22 @@ from steradian import _internal
 Array = NDArray[np.float64]
 
 SIGNATURES = """\
-    double f(double x)                                  one dimension
-    double f(const double *x, int64_t dim)              a point
-    double f(int dim, double *x)                        a point, as scipy.LowLevelCallable
-    double f(int dim, double *x, void *user_data)       the same with data
-    void f(const double *x, int64_t n, int64_t dim, double *out)    n points; coordinate j of point i is x[j * n + i]"""
+    double f(double x)                              one dimension
+    double f(const double *x, int64_t dim)          a point
+    double f(int dim, double *x)                    a point, as scipy.LowLevelCallable
+    double f(int dim, double *x, void *user_data)   the same with data
+    void f(const double *x, int64_t n, int64_t dim, double *out)
+                                                    n points; coordinate j of point i is x[j * n + i]"""
+
+_FUNCTION: Any = ctypes.CFUNCTYPE(None).__mro__[1]
+"""What all of ctypes' functions are."""
 
 
 def prepare(f: object, dim: int, name: str = "f") -> Callable[[Array], Array] | _internal.Native:
     """What compiled code calls for ``f``: a native function, or one from (n, dim) to (n,) or (n, m), checked.
 
-    Raises TypeError, naming ``name``, if ``f`` is neither callable nor a native function of a known signature.
+    Raises TypeError, naming ``name``, if ``f`` is neither callable nor a native function of a known
+    signature.
     """
     native = _native(f, dim, name)
     if native is not None:
@@ -44,8 +49,8 @@ def checked(f: Callable[[Array], Any], dim: int, name: str) -> Callable[[Array],
         except TypeError as error:
             if "only" in str(error) and ("length-1" in str(error) or "0-dimensional" in str(error)):
                 error.add_note(
-                    f"{name} is called with arrays of points: use numpy's functions instead of math's, or wrap it "
-                    f"in numpy.vectorize"
+                    f"{name} is called with arrays of points: use numpy's functions instead of math's, or "
+                    f"wrap it in numpy.vectorize"
                 )
             raise
         try:
@@ -59,8 +64,8 @@ def checked(f: Callable[[Array], Any], dim: int, name: str) -> Callable[[Array],
         if values.ndim not in (1, 2) or len(values) != n or (values.ndim == 2 and values.shape[1] == 0):
             points = "(n,)" if dim == 1 else f"(n, {dim})"
             raise ValueError(
-                f"{name} returned shape {values.shape} for {n} points; from points of shape {points} it must return "
-                f"(n,), or (n, m) for m integrals"
+                f"{name} returned shape {values.shape} for {n} points; from points of shape {points} it must "
+                f"return (n,), or (n, m) for m integrals"
             )
         return values
 
@@ -69,12 +74,15 @@ def checked(f: Callable[[Array], Any], dim: int, name: str) -> Callable[[Array],
 
 def _native(f: object, dim: int, name: str) -> _internal.Native | None:
     """A compiled function, if it is one."""
-    if hasattr(f, "address") and isinstance(getattr(f, "ctypes", None), ctypes._CFuncPtr):  # Numba's
-        return _native(f.ctypes, dim, name)
-    if isinstance(f, ctypes._CFuncPtr):
+    inner = getattr(f, "ctypes", None)
+    if hasattr(f, "address") and isinstance(inner, _FUNCTION):  # Numba's
+        return _native(inner, dim, name)
+    if isinstance(f, _FUNCTION):
         address = ctypes.cast(f, ctypes.c_void_p).value or 0
         if not f.argtypes:
-            raise TypeError(f"{name} is a ctypes function without argtypes; set argtypes and restype to one of\n{SIGNATURES}")
+            raise TypeError(
+                f"{name} is a ctypes function without argtypes; set these and restype to one of\n{SIGNATURES}"
+            )
         types = [_ctypes_name(a) for a in f.argtypes]
         return _internal.Native(address, _call(types, _ctypes_name(f.restype), dim, name), 0, f)
     if type(f).__name__ == "LowLevelCallable" and hasattr(f, "signature"):
@@ -86,7 +94,9 @@ def _low_level_callable(f: Any, dim: int, name: str) -> _internal.Native:
     """SciPy's wrapper of a C function with a pointer to data."""
     inner = _native(f.function, dim, name) if not isinstance(f.function, str) else None
     if inner is None:
-        raise TypeError(f"{name} is a LowLevelCallable that is made neither of a ctypes nor of a Numba function")
+        raise TypeError(
+            f"{name} is a LowLevelCallable that is made neither of a ctypes nor of a Numba function"
+        )
     data = ctypes.cast(f.user_data, ctypes.c_void_p).value if f.user_data is not None else 0
     return inner.with_data(data or 0)
 
@@ -101,14 +111,19 @@ def _ctypes_name(kind: Any) -> str:
         return "void*"
     if isinstance(kind, type) and issubclass(kind, ctypes._Pointer) and kind._type_ is ctypes.c_double:
         return "float64*"
-    if isinstance(kind, type) and issubclass(kind, ctypes._SimpleCData) and kind._type_ in "bhilq":
+    if kind in (ctypes.c_int8, ctypes.c_int16, ctypes.c_int32, ctypes.c_int64, ctypes.c_longlong):
         return f"int{8 * ctypes.sizeof(kind)}"
     return str(kind)
 
 
 def _call(arguments: list[str], result: str, dim: int, name: str) -> str:
     """Which call these types ask for. Raises TypeError that lists those there are."""
-    short = {"CPointer(float64)": "float64*", "CPointer(void)": "void*", "voidptr": "void*", "CPointer(none)": "void*"}
+    short = {
+        "CPointer(float64)": "float64*",
+        "CPointer(void)": "void*",
+        "voidptr": "void*",
+        "CPointer(none)": "void*",
+    }
     types = [short.get(argument, argument) for argument in arguments]
     known = {
         ("float64",): "number",
@@ -119,7 +134,11 @@ def _call(arguments: list[str], result: str, dim: int, name: str) -> str:
     }
     call = known.get(tuple(types))
     if call is None or (result != "float64") != (call == "block"):
-        raise TypeError(f"{name} is a native function {result}({', '.join(types)}); it must be one of\n{SIGNATURES}")
+        raise TypeError(
+            f"{name} is a native function {result}({', '.join(types)}); it must be one of\n{SIGNATURES}"
+        )
     if call == "number" and dim != 1:
-        raise TypeError(f"{name} takes one number, and points have {dim} coordinates; it must be one of\n{SIGNATURES}")
+        raise TypeError(
+            f"{name} takes one number, and points have {dim} coordinates; it must be one of\n{SIGNATURES}"
+        )
     return call
