@@ -59,7 +59,7 @@ def integrate(
     control: tuple[Integrand, float] | Sequence[tuple[Integrand, float]] | None = None,
     domain: Sequence[tuple[float, float]] | None = None,
     nan: str = "raise",
-    batch: int = 1 << 15,
+    batch: int = 1 << 14,
     threads: int = 0,
     on_progress: Callable[[IntegrationProgress], object] | None = None,
 ) -> Estimate:
@@ -124,7 +124,7 @@ def mis_integrate(
     seed: int = 0,
     control: tuple[Integrand, float] | Sequence[tuple[Integrand, float]] | None = None,
     nan: str = "raise",
-    batch: int = 1 << 15,
+    batch: int = 1 << 14,
     threads: int = 0,
     on_progress: Callable[[IntegrationProgress], object] | None = None,
 ) -> Estimate:
@@ -168,7 +168,7 @@ def ris_integrate(
     replicates: int = 32,
     seed: int = 0,
     nan: str = "raise",
-    batch: int = 1 << 15,
+    batch: int = 1 << 14,
     threads: int = 0,
     on_progress: Callable[[IntegrationProgress], object] | None = None,
 ) -> Estimate:

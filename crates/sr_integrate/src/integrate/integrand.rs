@@ -8,11 +8,17 @@ use crate::columns::Columns;
 pub trait Blocks {
     /// Evaluates f at each point, and appends the values to `f`: all of the first output, then all of the second, …
     ///
+    /// - `x`: `n` points, column after column
     /// - returns: the number of outputs, the same for every block
     ///
     /// # Errors
     /// Whatever goes wrong; the integration ends with it.
-    fn eval(&mut self, x: Columns<'_>, f: &mut Vec<f64>) -> Result<usize, Box<dyn Error + Send + Sync>>;
+    fn eval(
+        &mut self,
+        x: Vec<f64>,
+        n: usize,
+        f: &mut Vec<f64>,
+    ) -> Result<usize, Box<dyn Error + Send + Sync>>;
 }
 
 /// A function with one output that any thread may evaluate.

@@ -40,7 +40,7 @@ impl Default for Plan {
             rtol: 0.0,
             atol: 0.0,
             seconds: None,
-            batch: 1 << 15,
+            batch: 1 << 14,
             nan_as_zero: false,
         }
     }

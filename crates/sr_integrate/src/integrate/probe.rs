@@ -1,6 +1,6 @@
 //! Looking for places that a density misses.
 
-use super::integrand::{Blocks, Integrand};
+use super::integrand::Integrand;
 use super::{IntegrateError, rounds::values_of};
 use crate::columns::{Columns, ColumnsMut};
 use crate::density::Density;
@@ -45,9 +45,9 @@ pub fn look_for_holes(
             *to = all.get(i, j);
         }
     }
-    let there = Columns::new(&there, missed.len());
     let mut f = Vec::new();
-    let outputs = values_of(integrand, there, &mut f)?;
+    let outputs = values_of(integrand, there.clone(), missed.len(), &mut f)?;
+    let there = Columns::new(&there, missed.len());
     for i in 0..missed.len() {
         for a in 0..outputs {
             let value = f[a * missed.len() + i];
@@ -57,12 +57,4 @@ pub fn look_for_holes(
         }
     }
     Ok(())
-}
-
-impl dyn Blocks + '_ {
-    /// Evaluates, and turns foreign errors into ours.
-    pub(super) fn values(&mut self, x: Columns<'_>, f: &mut Vec<f64>) -> Result<usize, IntegrateError> {
-        f.clear();
-        self.eval(x, f).map_err(IntegrateError::Foreign)
-    }
 }

@@ -6,6 +6,7 @@
 
 use std::error::Error;
 use std::mem::take;
+use std::ops::Range;
 use std::time::Instant;
 
 use rayon::ThreadPool;
@@ -43,18 +44,25 @@ const TASK_ROWS: u64 = 1024;
 /// … and uniforms.
 const TASK_UNIFORMS: u64 = 1 << 19;
 
-/// Points of a round that are drawn at once.
+/// Points of a round that are drawn at once: the same of several replicates.
 struct Task {
     technique: usize,
-    replicate: u32,
+    replicates: Range<u32>,
     first: u64,
     len: usize,
+}
+
+impl Task {
+    fn rows(&self) -> usize {
+        self.replicates.len() * self.len
+    }
 }
 
 /// What a task drew: only points that count.
 struct Drawn {
     x: Vec<f64>,
     factor: Vec<f64>,
+    kept: Vec<usize>,
 }
 
 /// Integrates, with points from one or more techniques.
@@ -111,13 +119,14 @@ pub fn integrate(
                     reduce(*f, techniques, &points, task, scratch, independent)
                 };
                 for (task, tally) in tasks.iter().zip(run(pool, &tasks, work)) {
-                    sums.add([task.technique, task.replicate as usize], tally?)?;
+                    sums.add(task.technique, &task.replicates, tally?)?;
                 }
             }
             Integrand::Blocks(_) => {
                 let work = |scratch: &mut Scratch, task: &Task| {
                     draw(techniques, &points, task, scratch)?;
-                    Ok(Drawn { x: take(&mut scratch.x), factor: take(&mut scratch.factor) })
+                    let Scratch { x, factor, kept, .. } = scratch;
+                    Ok(Drawn { x: take(x), factor: take(factor), kept: take(kept) })
                 };
                 let drawn = run(pool, &tasks, work);
                 let drawn = drawn.into_iter().collect::<Result<Vec<_>, IntegrateError>>()?;
@@ -151,15 +160,15 @@ pub fn integrate(
 /// All values of f at points, whoever may evaluate it; returns the number of outputs.
 pub(super) fn values_of(
     integrand: &mut Integrand<'_>,
-    x: Columns<'_>,
+    x: Vec<f64>,
+    n: usize,
     f: &mut Vec<f64>,
 ) -> Result<usize, IntegrateError> {
     match integrand {
-        Integrand::Blocks(blocks) => blocks.values(x, f),
+        Integrand::Blocks(blocks) => blocks.eval(x, n, f).map_err(IntegrateError::Foreign),
         Integrand::Parallel(parallel) => {
-            f.clear();
-            f.resize(x.len(), 0.0);
-            parallel.eval(x, f);
+            f.resize(n, 0.0);
+            parallel.eval(Columns::new(&x, n), f);
             Ok(1)
         }
     }
@@ -171,11 +180,14 @@ fn tasks(techniques: &[(&dyn Technique, u32)], replicates: u32, done: u64, len: 
     for (t, &(technique, share)) in techniques.iter().enumerate() {
         let rows = (TASK_UNIFORMS / technique.uniforms().max(1) as u64).clamp(16, TASK_ROWS);
         let (first, end) = (done * u64::from(share), (done + len) * u64::from(share));
-        for replicate in 0..replicates {
+        let together = (rows / (end - first).min(rows)) as u32;
+        for replicate in (0..replicates).step_by(together as usize) {
+            let replicates = replicate..(replicate + together).min(replicates);
             let mut from = first;
             while from < end {
                 let len = rows.min(end - from);
-                tasks.push(Task { technique: t, replicate, first: from, len: len as usize });
+                let replicates = replicates.clone();
+                tasks.push(Task { technique: t, replicates, first: from, len: len as usize });
                 from += len;
             }
         }
@@ -206,6 +218,8 @@ struct Scratch {
     u: Vec<f64>,
     x: Vec<f64>,
     factor: Vec<f64>,
+    /// How many points of each replicate count.
+    kept: Vec<usize>,
     f: Vec<f64>,
 }
 
@@ -216,14 +230,20 @@ fn draw(
     task: &Task,
     scratch: &mut Scratch,
 ) -> Result<(), IntegrateError> {
-    let (technique, n) = (techniques[task.technique].0, task.len);
-    let Scratch { u, x, factor, .. } = scratch;
+    let (technique, n) = (techniques[task.technique].0, task.rows());
+    let Scratch { u, x, factor, kept, .. } = scratch;
     u.resize(technique.uniforms() * n, 0.0);
     x.resize(technique.space().dim() * n, 0.0);
     factor.resize(n, 0.0);
-    points[task.technique].fill(task.replicate, task.first, ColumnsMut::new(u, n));
+    for (j, column) in u.chunks_mut(n).enumerate() {
+        for (replicate, u) in task.replicates.clone().zip(column.chunks_mut(task.len)) {
+            points[task.technique].fill_column(replicate, task.first, j, u);
+        }
+    }
     technique.draw(Columns::new(u, n), ColumnsMut::new(x, n), factor)?;
-    if factor.iter().any(|&factor| !(factor > 0.0)) {
+    kept.clear();
+    kept.extend(factor.chunks(task.len).map(|factor| factor.iter().filter(|&&factor| factor > 0.0).count()));
+    if kept.iter().any(|&kept| kept < task.len) {
         let keep = |i: usize| factor[i] > 0.0;
         *x = x.chunks(n).flat_map(|column| (0..n).filter(|&i| keep(i)).map(|i| column[i])).collect();
         factor.retain(|&factor| factor > 0.0);
@@ -241,11 +261,11 @@ fn reduce(
     keep_moments: bool,
 ) -> Result<Tally, IntegrateError> {
     draw(techniques, points, task, scratch)?;
-    let Scratch { x, factor, f: values, .. } = scratch;
+    let Scratch { x, factor, kept, f: values, .. } = scratch;
     let x = Columns::new(x, factor.len());
     values.resize(factor.len(), 0.0);
     f.eval(x, values);
-    Ok(Tally::new(x, values, factor, 1, task.len, keep_moments))
+    Ok(Tally::new(x, values, factor, [1, task.len], kept, keep_moments))
 }
 
 /// Evaluates f at all points of a round in one block, and adds the terms of each task.
@@ -260,12 +280,12 @@ fn add_block(
     let n: usize = drawn.iter().map(|drawn| drawn.factor.len()).sum();
     let mut x = Vec::with_capacity(n * dim);
     for j in 0..dim {
-        for Drawn { x: part, factor } in drawn {
+        for Drawn { x: part, factor, .. } in drawn {
             x.extend_from_slice(&part[j * factor.len()..(j + 1) * factor.len()]);
         }
     }
     let mut f = Vec::new();
-    let outputs = if n > 0 { values_of(integrand, Columns::new(&x, n), &mut f)? } else { sums.outputs() };
+    let outputs = if n > 0 { values_of(integrand, x, n, &mut f)? } else { sums.outputs() };
     let mut from = 0;
     let mut part = Vec::new();
     for (task, drawn) in tasks.iter().zip(drawn) {
@@ -273,8 +293,9 @@ fn add_block(
         part.clear();
         (0..outputs).for_each(|a| part.extend_from_slice(&f[a * n + from..a * n + from + len]));
         let x = Columns::new(&drawn.x, len);
-        let tally = Tally::new(x, &mut part, &drawn.factor, outputs, task.len, sums.keeps_moments());
-        sums.add([task.technique, task.replicate as usize], tally)?;
+        let shape = [outputs, task.len];
+        let tally = Tally::new(x, &mut part, &drawn.factor, shape, &drawn.kept, sums.keeps_moments());
+        sums.add(task.technique, &task.replicates, tally)?;
         from += len;
     }
     Ok(())

@@ -1,5 +1,7 @@
 //! What is remembered of points: of a task's, and of all so far.
 
+use std::ops::Range;
+
 use super::IntegrateError;
 use super::integral::Integral;
 use super::lanes::Summary;
@@ -10,7 +12,7 @@ use crate::columns::Columns;
 /// A task's terms f · factor, added up, and what is odd about them.
 pub struct Tally {
     outputs: usize,
-    /// The sum of each output.
+    /// Replicate after replicate, the sum of each output.
     sums: Vec<f64>,
     /// Of the terms as samples, zeros included; empty unless they are independent.
     moments: Moments,
@@ -35,16 +37,17 @@ struct Odd {
 impl Tally {
     /// - `f`: the values of each output, one after the other, at the points `x`; is overwritten
     /// - `factor`: by what they are multiplied
-    /// - `asked`: how many points were to be drawn; the others count as 0
+    /// - `[outputs, len]`: the number of outputs; how many points each replicate was to have. Those missing count as 0
+    /// - `kept`: how many each replicate has
     pub fn new(
         x: Columns<'_>,
         f: &mut [f64],
         factor: &[f64],
-        outputs: usize,
-        asked: usize,
+        [outputs, len]: [usize; 2],
+        kept: &[usize],
         keep_moments: bool,
     ) -> Self {
-        let n = factor.len();
+        let (n, asked) = (factor.len(), len * kept.len());
         let mut tally = Self {
             outputs,
             sums: Vec::new(),
@@ -64,7 +67,12 @@ impl Tally {
             tally.summary = Summary::of(&f[..n]);
         }
         if !keep_moments {
-            tally.sums = f.chunks(n.max(1)).map(|column| Summary::of(column).sum).collect();
+            let mut from = 0;
+            for &kept in kept {
+                let column = |a: usize| &f[a * n + from..a * n + from + kept];
+                tally.sums.extend((0..outputs).map(|a| Summary::of(column(a)).sum));
+                from += kept;
+            }
         } else if n == asked {
             tally.moments = Moments::of_columns(f, n);
         } else {
@@ -158,11 +166,16 @@ impl Sums {
         self.independent
     }
 
-    /// Adds a task's points, of `[technique, replicate]`.
+    /// Adds a task's points.
     ///
     /// # Errors
     /// If the number of outputs changed.
-    pub fn add(&mut self, [t, r]: [usize; 2], tally: Tally) -> Result<(), IntegrateError> {
+    pub fn add(
+        &mut self,
+        technique: usize,
+        replicates: &Range<u32>,
+        tally: Tally,
+    ) -> Result<(), IntegrateError> {
         let Tally { outputs, sums, moments, summary, asked, drawn, nans, first } = tally;
         if self.outputs == 0 {
             self.outputs = outputs;
@@ -177,14 +190,17 @@ impl Sums {
         self.not_drawn += asked - drawn;
         self.summary.merge(&summary);
         if self.independent {
-            self.moments[t].merge(&moments);
+            self.moments[technique].merge(&moments);
             return Ok(());
         }
-        let cell = t * self.replicates + r;
-        self.counts[cell] += asked;
-        let totals = &mut self.totals[cell];
-        totals.resize(self.outputs, 0.0);
-        totals.iter_mut().zip(sums).for_each(|(total, sum)| *total += sum);
+        for (i, replicate) in replicates.clone().enumerate() {
+            let cell = technique * self.replicates + replicate as usize;
+            self.counts[cell] += asked / replicates.len() as u64;
+            let totals = &mut self.totals[cell];
+            totals.resize(self.outputs, 0.0);
+            let sums = sums.iter().skip(i * outputs).take(outputs);
+            totals.iter_mut().zip(sums).for_each(|(total, sum)| *total += sum);
+        }
         Ok(())
     }
 

@@ -125,11 +125,20 @@ impl Points {
     /// If `u` does not have [`Points::dim`] columns.
     pub fn fill(&self, replicate: u32, first: u64, mut u: ColumnsMut<'_>) {
         assert!(u.is_empty() || u.dim() == self.dim, "{} columns for {} dimensions", u.dim(), self.dim);
-        let key = derive_key(self.key, replicate);
         for j in 0..if u.is_empty() { 0 } else { self.dim } {
-            let key_j = derive_key(key, j as u32);
-            Isa::detect().run(Fill { points: self, key, key_j, first, j, u: u.column(j) });
+            self.fill_column(replicate, first, j, u.column(j));
         }
+    }
+
+    /// Writes dimension `j` of the points of a replicate from index `first` on.
+    ///
+    /// # Panics
+    /// If there is no such dimension.
+    pub fn fill_column(&self, replicate: u32, first: u64, j: usize, u: &mut [f64]) {
+        assert!(j < self.dim, "dimension {j} of {}", self.dim);
+        let key = derive_key(self.key, replicate);
+        let key_j = derive_key(key, j as u32);
+        Isa::detect().run(Fill { points: self, key, key_j, first, j, u });
     }
 }
 

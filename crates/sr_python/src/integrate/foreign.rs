@@ -83,26 +83,30 @@ impl sr_integrate::Density for ForeignDensity {
 pub struct Function(pub Py<PyAny>);
 
 impl Function {
-    fn call(&self, x: Columns<'_>, f: &mut Vec<f64>) -> PyResult<usize> {
+    fn call(&self, x: Vec<f64>, n: usize, f: &mut Vec<f64>) -> PyResult<usize> {
         Python::attach(|py| {
-            let rows = to_rows(py, x.numbers().to_vec(), x.len())?;
-            let values = self.0.call1(py, (rows,))?;
-            append_columns(values.bind(py), x.len(), f)
+            let values = self.0.call1(py, (to_rows(py, x, n)?,))?;
+            append_columns(values.bind(py), n, f)
                 .ok_or_else(|| PyValueError::new_err("an array of another shape than expected"))
         })
     }
 }
 
 impl Blocks for Function {
-    fn eval(&mut self, x: Columns<'_>, f: &mut Vec<f64>) -> Result<usize, Box<dyn Error + Send + Sync>> {
-        Ok(self.call(x, f)?)
+    fn eval(
+        &mut self,
+        x: Vec<f64>,
+        n: usize,
+        f: &mut Vec<f64>,
+    ) -> Result<usize, Box<dyn Error + Send + Sync>> {
+        Ok(self.call(x, n, f)?)
     }
 }
 
 impl Target for Function {
     fn eval(&self, x: Columns<'_>, target: &mut [f64]) -> Result<(), DensityError> {
         let mut values = Vec::with_capacity(target.len());
-        self.call(x, &mut values).map_err(foreign)?;
+        self.call(x.numbers().to_vec(), x.len(), &mut values).map_err(foreign)?;
         if values.len() != target.len() {
             return Err(foreign(PyValueError::new_err("target must return one number a point")));
         }

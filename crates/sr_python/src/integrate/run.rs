@@ -21,7 +21,7 @@ use crate::job::thread_count;
 use crate::names::value_error;
 
 /// Below so many points a pool of threads costs more than it saves.
-const POOL_PAYS: u64 = 1 << 13;
+const POOL_PAYS: u64 = 1 << 16;
 
 /// The most points that [`points`] makes at a time.
 const MAX_NUMBERS: usize = 1 << 31;
