@@ -5,7 +5,7 @@
 //! below `level` raises a false alarm with probability `level`; over many tests, see [`sidak`].
 //!
 //! - [`chi2`]: do the samples of a distribution follow its density? On the sphere, the line, the
-//!   plane, a parallelogram, or a list.
+//!   plane, a parallelogram, or a list; in any number of dimensions: [`chi2::blocks`].
 //! - [`t_test`], [`welch`], [`z_test`], [`z_test_pair`]: means.
 //! - [`ks`]: one-dimensional samples against a cumulative distribution.
 

@@ -1,10 +1,13 @@
 //! Shared test cases. Each list is long on purpose: a test over it must assert that it is not empty.
 
 pub mod bsdfs;
+pub mod densities;
+pub mod density_tests;
 pub mod distributions;
 pub mod lobe;
 pub mod scenes;
 
 pub use bsdfs::{BsdfCase, bsdf_cases, bsdf_models};
+pub use densities::{DensityCase, densities};
 pub use distributions::{DistributionCase, distribution_cases};
 pub use scenes::{KnownScene, known_scenes};

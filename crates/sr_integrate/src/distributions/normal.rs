@@ -148,6 +148,9 @@ impl TruncatedNormal {
 
     /// The value below which, from the near end, a share `u` lies.
     fn within(&self, u: f64) -> f64 {
+        if u <= 0.0 || u >= 1.0 {
+            return if u <= 0.0 { self.near } else { self.far };
+        }
         let target = u * self.mass;
         // Where the tail is as good as exponential, a guess that is good: Q(x) / Q(near) = v at √(near² − 2
         // ln v).

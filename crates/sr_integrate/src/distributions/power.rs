@@ -112,7 +112,9 @@ impl Cumulative for Power {
 
     fn icdf(&self, u: f64) -> f64 {
         let Self { low, high, m, rest, whole, .. } = *self;
-        let x = if m == 0.0 {
+        let x = if u >= 1.0 {
+            high
+        } else if m == 0.0 {
             scaled(low, u * whole)
         } else if m > 0.0 && u < 0.5 && rest < 0.5 {
             scaled(high, (rest + u * whole).ln() / m)

@@ -5,9 +5,12 @@
 //! further, so that the shape of a narrow peak is tested and not only its place. What the density
 //! lacks to 1 is the probability of `None`, which is counted in a cell of its own.
 //!
+//! Distributions that are chosen at run time, in any number of dimensions, have a test of their own: [`blocks`].
+//!
 //! Certainly wrong, whatever the counts: a density that integrates to more than 1, is negative or not
 //! finite; samples where the density is 0; samples whose `pdf` is not the density at them.
 
+pub mod blocks;
 mod chart;
 mod counting;
 mod pearson;
