@@ -5,6 +5,7 @@ mod density;
 mod foreign;
 mod make;
 mod native;
+mod request;
 mod run;
 
 use pyo3::prelude::*;
