@@ -34,6 +34,7 @@ from steradian.strategy import (
 from steradian.transform import Transform
 
 if TYPE_CHECKING:
+    from steradian import testing as testing
     from steradian.distributions import (
         Distribution as Distribution,
     )
@@ -132,11 +133,14 @@ __all__ = [
     "render",
     "ris_integrate",
     "strategy",
+    "testing",
     "uniform",
 ]
 
 
 def __getattr__(name: str) -> Any:
+    if name == "testing":
+        return import_module("steradian.testing")
     if name in __all__:
         for module in map(import_module, _LAZY):
             if name in module.__all__:

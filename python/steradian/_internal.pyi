@@ -184,6 +184,12 @@ def ris_integrate(
 def points(sequence: str, dim: int, n: int, seed: int, replicate: int, first: int) -> NDArray[np.float64]:
     """(n, dim) points of a sequence."""
 
+def chi2(density: Density, samples: int, cells: int, seed: int) -> tuple[float, float, float, str]:
+    """Do samples follow their density? Statistic, degrees of freedom, p-value, remark."""
+
+def ks(x: NDArray[np.float64], cdf: NDArray[np.float64]) -> tuple[float, float, float, str]:
+    """Were ascending numbers (n,) drawn with a cdf of these values (n,)? As :func:`chi2`."""
+
 def student_t(p: float, dof: float) -> float:
     """The number that Student's t stays below with probability ``p``."""
 

@@ -47,7 +47,12 @@ pub fn format_uncertain(mean: f64, stderr: f64) -> String {
     let rounded: f64 = format!("{stderr:.1e}").parse().unwrap_or(stderr);
     let exponent = rounded.log10().floor() as i32;
     if !(-12..=15).contains(&exponent) {
-        return format!("{mean:e} ± {stderr:.1e}");
+        if mean == 0.0 || (1e-5..1e15).contains(&mean.abs()) {
+            return format!("{mean} ± {stderr:.1e}");
+        }
+        // As many digits as the error leaves, and as a double has.
+        let digits = mean.abs().log10().floor() as i32 - exponent + 1;
+        return format!("{mean:.*e} ± {stderr:.1e}", digits.clamp(0, 16) as usize);
     }
     let decimals = (1 - exponent).max(0) as usize;
     format!("{mean:.decimals$} ± {rounded:.decimals$}")
@@ -175,6 +180,9 @@ mod tests {
         assert_eq!(show(123_456.0, 1234.0), "123456 ± 1200 (n = 100)");
         assert_eq!(show(1.5, 0.0), "1.5 ± 0 (n = 100)");
         assert_eq!(show(1.5, f64::NAN), "1.5 ± NaN (n = 100)");
-        assert_eq!(show(1.5e-20, 2e-22), "1.5e-20 ± 2.0e-22 (n = 100)");
+        assert_eq!(show(1.5e-20, 2e-22), "1.500e-20 ± 2.0e-22 (n = 100)");
+        assert_eq!(show(-3.552_713_678_8e-18, 6.9e-19), "-3.55e-18 ± 6.9e-19 (n = 100)");
+        assert_eq!(show(25.0, 2.8e-17), "25 ± 2.8e-17 (n = 100)");
+        assert_eq!(show(0.0, 2.8e-17), "0 ± 2.8e-17 (n = 100)");
     }
 }

@@ -1,6 +1,7 @@
 //! Integrals and the densities that they sample.
 
 mod arrays;
+mod check;
 mod density;
 mod foreign;
 mod make;
@@ -21,6 +22,8 @@ pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(run::mis_integrate, module)?)?;
     module.add_function(wrap_pyfunction!(run::ris_integrate, module)?)?;
     module.add_function(wrap_pyfunction!(run::points, module)?)?;
+    module.add_function(wrap_pyfunction!(check::chi2, module)?)?;
+    module.add_function(wrap_pyfunction!(check::ks, module)?)?;
     module.add_function(wrap_pyfunction!(run::student_t, module)?)?;
     module.add_function(wrap_pyfunction!(run::format_uncertain, module)?)?;
     make::register(module)

@@ -1,0 +1,129 @@
+"""Is a distribution what it says it is? Statistical tests, for those of this library and for your own.
+
+    sr.testing.chi2(p).check()          # raises AssertionError if samples and density disagree
+    sr.testing.ks(p).p_value            # on the line, where the cdf is known
+
+A p-value is the probability of samples at least this odd if nothing is wrong. So a test at level 0.001
+raises a false alarm once in a thousand runs. Seeds are fixed, so a test that passes goes on passing until
+something changes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from steradian import _internal
+from steradian.distributions.base import Distribution
+
+__all__ = ["LEVEL", "Report", "chi2", "ks"]
+
+LEVEL = 1e-4
+"""The level of :meth:`Report.check`, unless another is given."""
+
+
+@dataclass(frozen=True)
+class Report:
+    """What a test found."""
+
+    subject: str
+    """What was tested."""
+    statistic: float
+    """χ², or the D of Kolmogorov and Smirnov."""
+    dof: float
+    """Degrees of freedom of χ²; the number of samples for Kolmogorov–Smirnov."""
+    p_value: float
+    """The probability of a statistic at least this large if nothing is wrong; 0 if something certainly is;
+    NaN if the samples are no evidence."""
+    remark: str
+    """What to look at first: the worst cell, or what is certainly wrong."""
+
+    def passes(self, level: float = LEVEL) -> bool:
+        """Is there no evidence against it, at this level?"""
+        return self.p_value > level
+
+    def check(self, level: float = LEVEL) -> Report:
+        """The report itself. Raises AssertionError, which says what is wrong, if it does not pass."""
+        if not self.passes(level):
+            raise AssertionError(f"{self.subject}: samples and density disagree: {self._finding()}")
+        return self
+
+    def _finding(self) -> str:
+        if self.p_value == 0 and not np.isfinite(self.statistic):
+            return self.remark
+        return f"p = {self.p_value:.2g}; {self.remark}"
+
+    def __str__(self) -> str:
+        return f"{self.subject}: {self._finding()}"
+
+
+def chi2(over: Distribution, *, n: int = 1 << 18, cells: int = 512, seed: int = 1) -> Report:
+    """Do samples follow their density? Pearson's chi-square test, in any number of dimensions.
+
+    >>> import numpy as np, steradian as sr
+    >>> sr.testing.chi2(sr.Normal(0, 1)).passes()
+    True
+    >>> class Wrong(sr.Distribution):
+    ...     def sample(self, u):
+    ...         return sr.Samples(u**2, np.ones(len(u)))
+    ...     def pdf(self, x):
+    ...         return np.where((x >= 0) & (x <= 1), 1.0, 0.0)
+    >>> sr.testing.chi2(Wrong()).passes()
+    False
+
+    - ``over``: on the line, in a box, over directions or indices; built-in, or a subclass of your own.
+    - ``n``: samples that are counted. ``cells``: about so many; they hold about equally many samples. In
+      each, the density is integrated by points of its own, and the error of that counts as well. In many
+      dimensions a cell is cut along some axes only, so that a mistake between others can hide: test the
+      factors of a product as well.
+    - ``seed``: of the samples, 0 to 2^64 − 1.
+
+    Certainly wrong, whatever the counts: a density that is negative, infinite or NaN; samples where it is 0;
+    samples whose ``pdf`` is not the density there.
+
+    Raises TypeError if ``over`` is no distribution, ValueError if it cannot be tested (surface area, whose
+    surface is not known) or an argument makes no sense, and whatever its own methods raise.
+
+    Source: K. Pearson, Phil. Mag. 50 (1900).
+    """
+    _checked(over, n, seed)
+    if not 2 <= cells <= 1 << 20:
+        raise ValueError(f"cells is {cells}; it must be from 2 to 2^20")
+    return Report(_name(over), *_internal.chi2(over._core, n, cells, seed))
+
+
+def ks(over: Distribution, *, n: int = 1 << 16, seed: int = 1) -> Report:
+    """Do samples follow the cumulative distribution? Kolmogorov–Smirnov's test, on the line.
+
+    >>> import steradian as sr
+    >>> sr.testing.ks(sr.Exponential(2)).passes()
+    True
+
+    - ``over``: a distribution that has a ``cdf``. ``n``: samples, at least 10. ``seed``: of the samples.
+
+    Raises TypeError if ``over`` is no distribution or has no ``cdf``, and ValueError if an argument makes no
+    sense.
+
+    Source: M. A. Stephens, J. R. Stat. Soc. B 32 (1970), for the p-value.
+    """
+    _checked(over, n, seed)
+    cdf = getattr(over, "cdf", None)
+    if cdf is None or over.dim != 1:
+        raise TypeError(f"{_name(over)} has no cdf; sr.testing.chi2 needs none")
+    value, pdf = over.draw(n, seed)
+    x = np.sort(value[pdf != 0])
+    return Report(_name(over), *_internal.ks(x, np.ascontiguousarray(cdf(x), float)))
+
+
+def _checked(over: object, n: int, seed: int) -> None:
+    if not isinstance(over, Distribution):
+        raise TypeError(f"over must be a distribution, not {over!r}")
+    if not 10 <= n < 1 << 32:
+        raise ValueError(f"n is {n}; it must be from 10 to 2^32 - 1")
+    if not 0 <= seed < 1 << 64:
+        raise ValueError(f"seed is {seed}; it must be from 0 to 2^64 - 1")
+
+
+def _name(over: Distribution) -> str:
+    return type(over).__name__
