@@ -91,7 +91,8 @@ class Distribution(ABC):
         >>> sr.Uniform(2, 3).draw(1000).value.mean().round(1)
         np.float64(2.5)
         """
-        return self.sample(_internal.points(sequence, self.uniforms, n, seed, 0, 0))
+        u = _internal.points(sequence, self.uniforms, n, seed, 0, 0)
+        return self.sample(u[:, 0] if self.uniforms == 1 else u)
 
     def __mul__(self, other: Distribution | float) -> Product | Mixture | WeightedSum:
         """``p * q`` is the product, of independent coordinates; ``p * 0.5`` a part of a mixture."""

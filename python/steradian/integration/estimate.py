@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from steradian import _internal
 
@@ -41,6 +42,20 @@ class Estimate:
     """(m, m), of the means; ``None`` for one integral."""
     diagnostics: dict[str, Any] = field(default_factory=dict)
     """What was noticed: ``effective_n`` (Kish), ``largest_share`` (of a single point), ``not_drawn``, …"""
+
+    @classmethod
+    def of(cls, numbers: ArrayLike) -> Estimate:
+        """The mean of independent numbers, (n,), and its standard error. Raises ValueError for less than two.
+
+        >>> import steradian as sr
+        >>> print(sr.Estimate.of([1, 2, 3, 4, 5]))
+        3.00 ± 0.71 (n = 5)
+        """
+        array = np.asarray(numbers, float)
+        if array.ndim != 1 or len(array) < 2:
+            raise ValueError(f"numbers has shape {array.shape}; it must be (n,), n at least 2")
+        stderr = float(array.std(ddof=1)) / math.sqrt(len(array))
+        return cls(mean=float(array.mean()), stderr=stderr, n=len(array), dof=len(array) - 1)
 
     def interval(self, level: float = 0.95) -> tuple[float | Array, float | Array]:
         """The interval that holds the integral with probability ``level``, by Student's t.
