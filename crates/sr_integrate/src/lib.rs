@@ -8,6 +8,7 @@
 //! In: a density, an integrand, a sequence of points. Out: an estimate with an error that can be believed.
 //! Nothing here knows rendering.
 
+pub mod adaptive;
 pub mod columns;
 pub mod density;
 pub mod distributions;

@@ -30,6 +30,7 @@ pub use integrand::{Blocks, Integrand, Parallel};
 pub use plan::{MAX_REPLICATES, Plan, PlanError};
 pub use probe::look_for_holes;
 pub use resampled::{MAX_CANDIDATES, Resampled, Target};
+pub(crate) use rounds::values_of;
 pub use rounds::{OnRound, Progress, integrate};
 pub use technique::{Combined, Single, Technique, TechniqueError};
 

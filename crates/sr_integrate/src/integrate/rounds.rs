@@ -158,7 +158,7 @@ pub fn integrate(
 }
 
 /// All values of f at points, whoever may evaluate it; returns the number of outputs.
-pub(super) fn values_of(
+pub(crate) fn values_of(
     integrand: &mut Integrand<'_>,
     x: Vec<f64>,
     n: usize,

@@ -1,0 +1,297 @@
+//! Learning a density, round by round.
+//!
+//! Two candidates learn from the same points: a product along the coordinates, as vegas has it, and a mixture of
+//! products around the clusters in which f is large, along their own principal axes. The mixture is taken only where
+//! the points say that it lowers the variance.
+//!
+//! As long as a few points outweigh all others, f is learned to a power below 1, which flattens it, so that every round
+//! moves as far as its points can tell (annealing, as in R. Neal, "Annealed importance sampling", Stat. Comput. 11,
+//! 2001). Narrow peaks are found from their slopes that way, and of several peaks the lower are not lost.
+
+use std::sync::Arc;
+
+use rayon::ThreadPool;
+use sr_sampling::sequence::mix::{derive_key, mix64};
+
+use super::axis::Axis;
+use super::cluster::{Cloud, Cluster, clusters};
+use super::component::{Component, Frame};
+use super::cube::{CubeDensity, PARTS};
+use super::matrix::eigenvectors;
+use super::round::{Round, round};
+use super::training::{Block, Training};
+use crate::density::Density;
+use crate::integrate::{Integrand, IntegrateError};
+
+/// This share of the probability along an axis is spread evenly, so that nothing is out of reach.
+const FLOOR: f64 = 0.005;
+
+/// How much to learn.
+#[derive(Clone, Debug)]
+pub struct Learning {
+    /// Different seeds give unrelated points.
+    pub seed: u64,
+    /// At most about so many evaluations.
+    pub evaluations: u64,
+    /// Enough has been learned if what remains to be done for this relative error costs less than what was done.
+    pub rtol: f64,
+}
+
+/// What was learned.
+#[derive(Clone, Debug)]
+pub struct Lesson {
+    /// Where to draw uniforms for the base density.
+    pub cube: CubeDensity,
+    /// What the rounds estimated.
+    pub rounds: Vec<Round>,
+}
+
+impl Lesson {
+    /// The number of evaluations.
+    pub fn n(&self) -> u64 {
+        self.rounds.iter().map(|round| round.n).sum()
+    }
+}
+
+/// Learns where f / `base` is large.
+///
+/// - `on_round`: is told after each round, and may end everything by an error
+///
+/// # Errors
+/// Those of the density and the integrand. Values that are not finite count as 0: the estimate that follows sees them.
+pub fn learn(
+    base: &Arc<dyn Density>,
+    integrand: &mut Integrand<'_>,
+    learning: &Learning,
+    pool: Option<&ThreadPool>,
+    on_round: &mut dyn FnMut(&Round) -> Result<(), IntegrateError>,
+) -> Result<Lesson, IntegrateError> {
+    let dim = base.uniforms();
+    let mut pupil = Pupil::new(dim, derive_key(learning.seed, 0x1ea2));
+    let mut rounds: Vec<Round> = Vec::new();
+    let (mut spent, mut best, mut stale) = (0, None::<(f64, CubeDensity)>, 0);
+    let mut size = (learning.evaluations / 10).clamp(MIN_ROUND, 1 << 20);
+    if learning.rtol > 0.0 {
+        size = size.min(2 * MIN_ROUND);
+    }
+    while rounds.is_empty() || spent + size <= learning.evaluations {
+        let seed = derive_key(learning.seed, rounds.len() as u32);
+        let (seen, scales, blocks) = round(base, &pupil.cube, integrand, (size, seed), pool)?;
+        on_round(&seen)?;
+        spent += seen.n;
+        let cost = seen.cost(&scales);
+        let drew = pupil.cube.clone();
+        let efficiency = seen.effective_n / seen.n as f64;
+        rounds.push(seen);
+        let whole = pupil.learn(&blocks, efficiency);
+        let known = best.as_ref().map_or(f64::INFINITY, |(cost, _)| *cost);
+        let settled = whole && efficiency > 0.0;
+        if settled || best.is_none() {
+            stale = if cost < 0.8 * known { 0 } else { stale + 1 };
+            if cost < 1.3 * known || best.is_none() {
+                best = Some((cost.min(known), drew));
+            }
+        }
+        let enough = settled && learning.rtol > 0.0 && cost / learning.rtol.powi(2) < 2.0 * spent as f64;
+        if settled && (stale >= 2 || cost < GOOD_ENOUGH) || enough {
+            break;
+        }
+        if learning.rtol > 0.0 {
+            size += size / 2;
+        }
+    }
+    // What the last round taught has not been tried; it was right to go on so far, unless rounds had become worse.
+    let cube = match best {
+        Some((_, cube)) if stale > 0 => cube,
+        _ => pupil.cube,
+    };
+    Ok(Lesson { cube, rounds })
+}
+
+/// Rounds of fewer points teach little.
+const MIN_ROUND: u64 = 1024;
+
+/// The variance of a point, relative to the square of the mean, at which nothing need be learned any more.
+const GOOD_ENOUGH: f64 = 1e-3;
+
+/// A product is refined so often with the points of a round: its coordinates have to agree with one another.
+const PASSES: u32 = 3;
+
+/// Points are flattened until this share of them would do as well if they were equal.
+const EFFECTIVE: f64 = 0.05;
+
+/// What has been learned so far.
+struct Pupil {
+    key: u64,
+    /// The best product along the coordinates, on its own.
+    alone: Component,
+    /// What draws the next round.
+    cube: CubeDensity,
+    /// The power of f that it follows.
+    power: f64,
+    lessons: u32,
+    /// Rounds since f is learned as it is.
+    whole: u32,
+}
+
+impl Pupil {
+    fn new(dim: usize, key: u64) -> Self {
+        let alone = Component::uniform(dim);
+        Self { key, alone, cube: CubeDensity::uniform(dim), power: 0.0, lessons: 0, whole: 0 }
+    }
+
+    /// Learns from a round. Returns whether its points were drawn for f as it is.
+    fn learn(&mut self, blocks: &[Block], efficiency: f64) -> bool {
+        let drawn_for_all = self.power == 1.0;
+        if !(efficiency > 0.0) {
+            return false;
+        }
+        self.lessons += 1;
+        let power = temper(blocks, self.lessons);
+        // No progress: points will not tell more than they do.
+        self.power = if power < 1.1 * self.power { 1.0 } else { power };
+        let training = Training { blocks, power: self.power };
+        for _ in 0..PASSES {
+            self.alone = training.refined_alone(&self.alone, FLOOR);
+        }
+        let spread = 1.0 / efficiency - 1.0;
+        let mixed = self.cube.components().len() > 1;
+        let helpless = spread > 0.3 && self.lessons > 2;
+        if !mixed && !helpless && self.power == 1.0 {
+            self.cube = CubeDensity::single(self.alone.clone());
+            return drawn_for_all;
+        }
+        let afresh = !mixed || self.power < 1.0 || self.whole < 2;
+        self.whole += u32::from(self.power == 1.0);
+        let components = if afresh { self.clustered(&training) } else { training.refined(&self.cube, FLOOR) };
+        let start = vec![1.0; components.len()];
+        let (weights, mixture) = training.fit_weights(&components, &start);
+        let (_, alone) = training.fit_weights(std::slice::from_ref(&self.alone), &[1.0]);
+        self.cube = if alone - 1.0 < (1.0 + 0.3 * components.len() as f64) * (mixture - 1.0) + 0.02 {
+            CubeDensity::single(self.alone.clone())
+        } else {
+            mixture_with_reserve(components, weights)
+        };
+        drawn_for_all
+    }
+
+    /// The product on its own, the constant density, and one around each cluster.
+    fn clustered(&self, training: &Training<'_>) -> Vec<Component> {
+        let dim = self.cube.dim();
+        let key = derive_key(self.key, self.lessons);
+        let cloud = resampled(training, dim, key);
+        let points = training.blocks.iter().map(|block| block.pdf.len()).sum::<usize>();
+        let worth = cloud.weights.iter().sum::<f64>();
+        let found = clusters(&cloud, (points / 512).clamp(2, 24), key);
+        let mut components = vec![Component::uniform(dim), self.alone.clone()];
+        components.extend(found.iter().map(|cluster| around(cluster, worth)));
+        components
+    }
+}
+
+/// The mixture, at least one part of which is a constant density.
+fn mixture_with_reserve(components: Vec<Component>, mut weights: Vec<f64>) -> CubeDensity {
+    let dim = components[0].axes().len();
+    let part = 1.0 / f64::from(PARTS);
+    let constant = Component::uniform(dim);
+    let mut components = components;
+    match components.iter().position(|component| *component == constant) {
+        Some(k) => weights[k] = weights[k].max(1.02 * part),
+        None => {
+            components.push(constant);
+            weights.push(1.02 * part);
+        }
+    }
+    CubeDensity::mixture(components, &weights)
+}
+
+/// The largest power of f, at most 1, of which enough points are left that count.
+fn temper(blocks: &[Block], lesson: u32) -> f64 {
+    let all: Vec<(f64, f64)> = blocks
+        .iter()
+        .flat_map(|block| block.size.iter().zip(&block.pdf))
+        .filter(|(size, _)| **size > 0.0)
+        .map(|(size, pdf)| (size.ln(), pdf.ln()))
+        .collect();
+    let points: usize = blocks.iter().map(|block| block.pdf.len()).sum();
+    // A sample of them says it.
+    let step = (all.len() / 4096).max(1);
+    let some: Vec<(f64, f64)> = all.iter().skip(lesson as usize % step).step_by(step).copied().collect();
+    let share = 1.0 / step as f64;
+    let effective = |power: f64| {
+        let log = |&(size, pdf): &(f64, f64)| power * size - pdf;
+        let top = some.iter().map(log).fold(f64::NEG_INFINITY, f64::max);
+        let (sum, squares) =
+            some.iter().map(|pair| (log(pair) - top).exp()).fold((0.0, 0.0), |(s, q), w| (s + w, q + w * w));
+        sum * sum / squares / share
+    };
+    let goal = EFFECTIVE * points as f64;
+    if effective(1.0) >= goal {
+        return 1.0;
+    }
+    let (mut low, mut high) = (0.01, 1.0);
+    for _ in 0..12 {
+        let middle = (low * high as f64).sqrt();
+        if effective(middle) >= goal { low = middle } else { high = middle }
+    }
+    low
+}
+
+/// Points in proportion to their weights; worth as many as their effective number.
+fn resampled(training: &Training<'_>, dim: usize, key: u64) -> Cloud {
+    let weights = training.weights();
+    let (sum, squares) = weights.iter().fold((0.0, 0.0), |(s, q), w| (s + w, q + w * w));
+    let effective = sum * sum / squares;
+    let count = (2.0 * effective).clamp(64.0, 768.0);
+    let step = sum / count;
+    let mut goal = step * (mix64(key) as f64 / u64::MAX as f64);
+    let (mut points, mut copies) = (Vec::new(), Vec::new());
+    let (mut reached, mut from) = (0.0, 0);
+    for block in training.blocks {
+        let n = block.pdf.len();
+        for i in 0..n {
+            reached += weights[from + i];
+            let mut here = 0.0;
+            while goal < reached {
+                here += 1.0;
+                goal += step;
+            }
+            if here > 0.0 {
+                points.extend((0..dim).map(|j| block.x[j * n + i]));
+                copies.push(here);
+            }
+        }
+        from += n;
+    }
+    let scale = effective.min(count) / copies.iter().sum::<f64>();
+    copies.iter_mut().for_each(|copies| *copies *= scale);
+    Cloud { dim, points, weights: copies }
+}
+
+/// A product around a cluster: along its principal axes, if these differ from the cube's.
+fn around(cluster: &Cluster, worth: f64) -> Component {
+    const BINS: usize = 32;
+    const WIDER: f64 = 1.15;
+    let dim = cluster.mean.len();
+    let c = |a: usize, b: usize| cluster.covariance[a * dim + b];
+    let correlation = (0..dim)
+        .flat_map(|a| (0..a).map(move |b| (a, b)))
+        .map(|(a, b)| (c(a, b) / (c(a, a) * c(b, b)).sqrt()).abs())
+        .fold(0.0, f64::max);
+    let chance = 3.5 / (cluster.share * worth).max(1.0).sqrt();
+    if correlation < chance.max(0.2) {
+        let axis = |j: usize| Axis::bell(cluster.mean[j], WIDER * c(j, j).sqrt(), [0.0, 1.0], BINS, FLOOR);
+        return Component::new((0..dim).map(axis).collect(), None);
+    }
+    let rotation = eigenvectors(&cluster.covariance, dim);
+    let frame = Frame { centre: cluster.mean.clone(), rotation };
+    let ranges = frame.ranges();
+    let axis = |j: usize| {
+        let along = |a: usize| frame.rotation[a * dim + j];
+        let variance: f64 =
+            (0..dim * dim).map(|i| along(i / dim) * c(i / dim, i % dim) * along(i % dim)).sum();
+        Axis::bell(0.0, WIDER * variance.max(1e-30).sqrt(), ranges[j], BINS, FLOOR)
+    };
+    let axes = (0..dim).map(axis).collect();
+    Component::new(axes, Some(frame))
+}
