@@ -52,7 +52,7 @@ impl Frame {
     }
 
     /// y = Rᵀ (x − centre), coordinate `j`.
-    fn from_cube(&self, x: Columns<'_>, j: usize, y: &mut [f64]) {
+    fn along(&self, x: Columns<'_>, j: usize, y: &mut [f64]) {
         let d = self.centre.len();
         y.fill(0.0);
         for k in 0..d {
@@ -115,7 +115,7 @@ impl Component {
         let mut y = vec![0.0; if self.frame.is_some() { x.len() } else { 0 }];
         for (j, axis) in self.axes.iter().enumerate() {
             if let Some(frame) = &self.frame {
-                frame.from_cube(x, j, &mut y);
+                frame.along(x, j, &mut y);
                 axis.unmap(&y, u.column(j), pdf);
             } else {
                 axis.unmap(x.column(j), u.column(j), pdf);

@@ -229,9 +229,9 @@ fn temper(blocks: &[Block], lesson: u32) -> f64 {
     if effective(1.0) >= goal {
         return 1.0;
     }
-    let (mut low, mut high) = (0.01, 1.0);
+    let (mut low, mut high) = (0.01_f64, 1.0);
     for _ in 0..12 {
-        let middle = (low * high as f64).sqrt();
+        let middle = (low * high).sqrt();
         if effective(middle) >= goal { low = middle } else { high = middle }
     }
     low
