@@ -36,10 +36,34 @@ from steradian.transform import Transform
 if TYPE_CHECKING:
     from steradian import testing as testing
     from steradian.distributions import (
+        Affine as Affine,
+    )
+    from steradian.distributions import (
+        Alias as Alias,
+    )
+    from steradian.distributions import (
+        AreaLight as AreaLight,
+    )
+    from steradian.distributions import (
+        Cone as Cone,
+    )
+    from steradian.distributions import (
+        CosineHemisphere as CosineHemisphere,
+    )
+    from steradian.distributions import (
+        Discrete as Discrete,
+    )
+    from steradian.distributions import (
+        Disk as Disk,
+    )
+    from steradian.distributions import (
         Distribution as Distribution,
     )
     from steradian.distributions import (
         Exponential as Exponential,
+    )
+    from steradian.distributions import (
+        FromPdf as FromPdf,
     )
     from steradian.distributions import (
         Linear as Linear,
@@ -51,6 +75,12 @@ if TYPE_CHECKING:
         Normal as Normal,
     )
     from steradian.distributions import (
+        PiecewiseConstant as PiecewiseConstant,
+    )
+    from steradian.distributions import (
+        PiecewiseLinear as PiecewiseLinear,
+    )
+    from steradian.distributions import (
         Power as Power,
     )
     from steradian.distributions import (
@@ -60,6 +90,15 @@ if TYPE_CHECKING:
         Samples as Samples,
     )
     from steradian.distributions import (
+        SphericalRectangle as SphericalRectangle,
+    )
+    from steradian.distributions import (
+        SphericalTriangle as SphericalTriangle,
+    )
+    from steradian.distributions import (
+        Tabulated2D as Tabulated2D,
+    )
+    from steradian.distributions import (
         Tent as Tent,
     )
     from steradian.distributions import (
@@ -67,6 +106,18 @@ if TYPE_CHECKING:
     )
     from steradian.distributions import (
         Uniform as Uniform,
+    )
+    from steradian.distributions import (
+        UniformHemisphere as UniformHemisphere,
+    )
+    from steradian.distributions import (
+        UniformSphere as UniformSphere,
+    )
+    from steradian.distributions import (
+        VisibleNormals as VisibleNormals,
+    )
+    from steradian.distributions import (
+        VonMisesFisher as VonMisesFisher,
     )
     from steradian.integration import (
         Estimate as Estimate,
@@ -97,17 +148,27 @@ if TYPE_CHECKING:
 _LAZY = ("steradian.distributions", "steradian.integration")
 
 __all__ = [
+    "Affine",
+    "Alias",
+    "AreaLight",
+    "Cone",
+    "CosineHemisphere",
     "Density",
     "Diagnostic",
+    "Discrete",
+    "Disk",
     "Distribution",
     "Estimate",
     "Exponential",
+    "FromPdf",
     "IntegrandError",
     "IntegrationProgress",
     "IntegrationWarning",
     "Linear",
     "Mixture",
     "Normal",
+    "PiecewiseConstant",
+    "PiecewiseLinear",
     "Power",
     "Product",
     "Progress",
@@ -116,12 +177,19 @@ __all__ = [
     "Scene",
     "SceneError",
     "SceneWarning",
+    "SphericalRectangle",
+    "SphericalTriangle",
     "Strategy",
     "SupportError",
+    "Tabulated2D",
     "Tent",
     "Transform",
     "Truncated",
     "Uniform",
+    "UniformHemisphere",
+    "UniformSphere",
+    "VisibleNormals",
+    "VonMisesFisher",
     "__version__",
     "bsdf",
     "cosine",

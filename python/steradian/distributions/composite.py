@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from steradian import _internal
 from steradian.distributions.base import Compiled, Distribution
 
@@ -45,3 +48,30 @@ class Mixture(Compiled):
         super().__init__(
             _internal.mixture([p._core for p in components], weights), components=components, weights=weights
         )
+
+
+class Affine(Compiled):
+    """Another distribution, stretched, turned and moved: x = matrix · y + offset; p(x) = p(y) / |det matrix|.
+
+    ``of``: a distribution of lengths, areas or volumes. ``matrix``: (dim, dim), or a number to scale all axes
+    alike. ``offset``: (dim,), or a number. Raises ValueError if shapes do not fit, a number is not finite, or
+    the matrix cannot be inverted.
+
+    >>> import steradian as sr
+    >>> p = sr.Affine(sr.Exponential(1), -2, 3)  # falls from 3 towards −∞
+    >>> p.support, p.mean
+    (array([[-inf,   3.]]), 1.0)
+    """
+
+    def __init__(self, of: Distribution, matrix: ArrayLike, offset: ArrayLike = 0.0) -> None:
+        rows, move = np.asarray(matrix, float), np.asarray(offset, float)
+        if rows.ndim == 0:
+            rows = rows * np.eye(of.dim)
+        if move.ndim == 0:
+            move = np.full(of.dim, move)
+        if rows.shape != (of.dim, of.dim):
+            raise ValueError(f"matrix has shape {rows.shape}; it must be ({of.dim}, {of.dim})")
+        if move.shape != (of.dim,):
+            raise ValueError(f"offset has shape {move.shape}; it must be ({of.dim},)")
+        core = _internal.affine(of._core, np.ascontiguousarray(rows).reshape(-1), np.ascontiguousarray(move))
+        super().__init__(core, of=of, matrix=matrix, offset=offset)

@@ -10,7 +10,7 @@ use crate::space::Space;
 ///
 /// A uniform of 0 stands for all numbers up to the next one. Drawn from 0 itself, a distribution without a
 /// lower end would give −∞, and a pole there an infinite density.
-const LEAST: f64 = f64::EPSILON / 4.0;
+pub(crate) const LEAST: f64 = f64::EPSILON / 4.0;
 
 /// A distribution of one real number with a distribution function that can be inverted. Everything else
 /// follows: whatever implements it is a [`Density`] of [`Space::Line`], drawn by inversion, so that strata

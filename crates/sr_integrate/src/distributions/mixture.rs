@@ -159,19 +159,19 @@ impl Density for Mixture {
         union(self.components.iter().map(|component| component.support()))
     }
 
-    /// Between components there may be nothing.
+    /// Between components on the line, or of indices, there may be nothing. In more dimensions the box around
+    /// all of them is rarely what is meant: only components that have a range of their own have one together.
     fn domain(&self) -> Option<Vec<[f64; 2]>> {
         if let [component] = self.components.as_slice() {
             return component.domain();
         }
-        let domains =
-            self.components.iter().map(|component| component.domain().unwrap_or_else(|| component.support()));
-        let union = union(domains);
-        let whole = self
-            .components
-            .iter()
-            .any(|component| component.domain().is_none() && component.support() == union);
-        (!whole).then_some(union)
+        let ranges = || self.components.iter().map(|part| part.domain().unwrap_or_else(|| part.support()));
+        let union = union(ranges());
+        if self.space.dim() > 1 {
+            return self.components.iter().any(|part| part.domain().is_some()).then_some(union);
+        }
+        let covers = |part: &Arc<dyn Density>| part.domain().is_none() && part.support() == union;
+        (!self.components.iter().any(covers)).then_some(union)
     }
 
     fn mean(&self) -> Option<Vec<f64>> {

@@ -55,6 +55,7 @@ struct Truncated {
 impl Truncated {
     fn new(of: Arc<dyn Density>, low: f64, high: f64) -> Result<Self, ParameterError> {
         let [[of_low, of_high]] = of.support()[..] else { unreachable!("on the line") };
+        let nothing = ParameterError::Nothing { argument: "[low, high]", low, high };
         // An end beyond the support cuts nothing.
         let (low, high) = (low.max(of_low), high.min(of_high));
         let mut cut = Self { of, low, high, from_above: false, beyond: 0.0, mass: 1.0 };
@@ -63,7 +64,7 @@ impl Truncated {
         let from_above = below > above;
         let mass = if from_above { of.above(low) - above } else { of.cdf(high) - below };
         if !(mass > 0.0) {
-            return Err(ParameterError::Nothing { argument: "[low, high]", low, high });
+            return Err(nothing);
         }
         if !mass.recip().is_finite() {
             return Err(bad("the probability within [low, high]", mass, "one whose inverse is finite"));
@@ -88,7 +89,7 @@ impl Density for Truncated {
 
     fn sample(&self, u: Columns<'_>, mut x: ColumnsMut<'_>, pdf: &mut [f64]) -> Result<(), DensityError> {
         for (&u, x) in u.column(0).iter().zip(x.column(0)) {
-            *x = self.icdf(u.max(0.5 * f64::EPSILON));
+            *x = self.icdf(u.max(super::line::LEAST));
         }
         self.pdf(x.as_columns(), pdf)
     }

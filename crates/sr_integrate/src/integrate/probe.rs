@@ -5,6 +5,7 @@ use super::{IntegrateError, rounds::values_of};
 use crate::columns::{Columns, ColumnsMut};
 use crate::density::Density;
 use crate::points::{Points, Sequence};
+use crate::space::Space;
 
 /// How many points are looked at.
 const POINTS: usize = 512;
@@ -30,7 +31,12 @@ pub fn look_for_holes(
     let mut x = ColumnsMut::new(&mut numbers, POINTS);
     Points::new(Sequence::Sobol, dim, 0x70726f6265).fill(0, 0, x.reborrow());
     for (j, [low, high]) in domain.iter().enumerate() {
-        x.column(j).iter_mut().for_each(|x| *x = low + *x * (high - low));
+        if density.space() == Space::Counting {
+            // Between indices there is nothing to miss.
+            x.column(j).iter_mut().for_each(|x| *x = (low + (*x * (high - low + 1.0)).floor()).min(*high));
+        } else {
+            x.column(j).iter_mut().for_each(|x| *x = low + *x * (high - low));
+        }
     }
     let mut pdf = vec![0.0; POINTS];
     density.pdf(x.as_columns(), &mut pdf)?;

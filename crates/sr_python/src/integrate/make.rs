@@ -29,7 +29,7 @@ pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
 }
 
 /// What Python gets for a density, or for why there is none.
-fn made<D: RustDensity + 'static, E: ToString>(density: Result<D, E>) -> PyResult<Density> {
+pub fn made<D: RustDensity + 'static, E: ToString>(density: Result<D, E>) -> PyResult<Density> {
     density.map(|density| Density(Arc::new(density))).map_err(value_error)
 }
 

@@ -5,6 +5,8 @@ mod check;
 mod density;
 mod foreign;
 mod make;
+mod make_directions;
+mod make_tables;
 mod native;
 mod request;
 mod run;
@@ -26,5 +28,7 @@ pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(check::ks, module)?)?;
     module.add_function(wrap_pyfunction!(run::student_t, module)?)?;
     module.add_function(wrap_pyfunction!(run::format_uncertain, module)?)?;
-    make::register(module)
+    make::register(module)?;
+    make_tables::register(module)?;
+    make_directions::register(module)
 }
