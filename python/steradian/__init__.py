@@ -37,110 +37,45 @@ if TYPE_CHECKING:
     from steradian import testing as testing
     from steradian.distributions import (
         Affine as Affine,
-    )
-    from steradian.distributions import (
         Alias as Alias,
-    )
-    from steradian.distributions import (
         AreaLight as AreaLight,
-    )
-    from steradian.distributions import (
         Cone as Cone,
-    )
-    from steradian.distributions import (
         CosineHemisphere as CosineHemisphere,
-    )
-    from steradian.distributions import (
         Discrete as Discrete,
-    )
-    from steradian.distributions import (
         Disk as Disk,
-    )
-    from steradian.distributions import (
         Distribution as Distribution,
-    )
-    from steradian.distributions import (
         Exponential as Exponential,
-    )
-    from steradian.distributions import (
         FromPdf as FromPdf,
-    )
-    from steradian.distributions import (
+        Learned as Learned,
         Linear as Linear,
-    )
-    from steradian.distributions import (
         Mixture as Mixture,
-    )
-    from steradian.distributions import (
         Normal as Normal,
-    )
-    from steradian.distributions import (
         PiecewiseConstant as PiecewiseConstant,
-    )
-    from steradian.distributions import (
         PiecewiseLinear as PiecewiseLinear,
-    )
-    from steradian.distributions import (
         Power as Power,
-    )
-    from steradian.distributions import (
         Product as Product,
-    )
-    from steradian.distributions import (
         Samples as Samples,
-    )
-    from steradian.distributions import (
         SphericalRectangle as SphericalRectangle,
-    )
-    from steradian.distributions import (
         SphericalTriangle as SphericalTriangle,
-    )
-    from steradian.distributions import (
         Tabulated2D as Tabulated2D,
-    )
-    from steradian.distributions import (
         Tent as Tent,
-    )
-    from steradian.distributions import (
         Truncated as Truncated,
-    )
-    from steradian.distributions import (
         Uniform as Uniform,
-    )
-    from steradian.distributions import (
         UniformHemisphere as UniformHemisphere,
-    )
-    from steradian.distributions import (
         UniformSphere as UniformSphere,
-    )
-    from steradian.distributions import (
         VisibleNormals as VisibleNormals,
-    )
-    from steradian.distributions import (
         VonMisesFisher as VonMisesFisher,
     )
     from steradian.integration import (
+        Adapted as Adapted,
         Estimate as Estimate,
-    )
-    from steradian.integration import (
         IntegrandError as IntegrandError,
-    )
-    from steradian.integration import (
         IntegrationProgress as IntegrationProgress,
-    )
-    from steradian.integration import (
         IntegrationWarning as IntegrationWarning,
-    )
-    from steradian.integration import (
         SupportError as SupportError,
-    )
-    from steradian.integration import (
+        adapt as adapt,
         integrate as integrate,
-    )
-    from steradian.integration import (
         mis_integrate as mis_integrate,
-    )
-    from steradian.integration import (
         ris_integrate as ris_integrate,
     )
 
@@ -148,6 +83,7 @@ if TYPE_CHECKING:
 _LAZY = ("steradian.distributions", "steradian.integration")
 
 __all__ = [
+    "Adapted",
     "Affine",
     "Alias",
     "AreaLight",
@@ -164,6 +100,7 @@ __all__ = [
     "IntegrandError",
     "IntegrationProgress",
     "IntegrationWarning",
+    "Learned",
     "Linear",
     "Mixture",
     "Normal",
@@ -191,6 +128,7 @@ __all__ = [
     "VisibleNormals",
     "VonMisesFisher",
     "__version__",
+    "adapt",
     "bsdf",
     "cosine",
     "integrate",

@@ -181,6 +181,27 @@ def ris_integrate(
 ) -> Integral:
     """As ``integrate``, with samples that are chosen among candidates."""
 
+class Adapted:
+    """An integral, the density that was learned for it, and whether what was seen on the way agrees."""
+
+    integral: Integral
+    parts: tuple[list[tuple[list[list[float]], list[float], list[float]]], list[int]]
+    rounds: list[tuple[list[float], list[float], int, float, int]]
+    chi2: float
+    dof: int
+    n: int
+    q: float
+
+def adapt(over: Density, f: object, request: Mapping[str, Any]) -> Adapted:
+    """As ``integrate``, with a density that is learned over another."""
+
+def learned(
+    over: Density,
+    parts: Sequence[tuple[Sequence[Sequence[float]], Sequence[float], Sequence[float]]],
+    shares: Sequence[int],
+) -> Density:
+    """A density that was learned before."""
+
 def points(sequence: str, dim: int, n: int, seed: int, replicate: int, first: int) -> NDArray[np.float64]:
     """(n, dim) points of a sequence."""
 

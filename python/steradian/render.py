@@ -11,8 +11,7 @@ from typing import Any, Literal
 from steradian import _internal, _jobs, _memory
 from steradian.result import Result
 from steradian.scene import Scene, checked_threads
-from steradian.strategy import Density, Strategy
-from steradian.strategy import strategy as as_strategy
+from steradian.strategy import Density, Strategy, strategy as as_strategy
 
 MAX_SPP = 2**31 - 1
 """The most samples per pixel."""

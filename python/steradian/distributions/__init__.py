@@ -13,6 +13,7 @@ from steradian.distributions.directions import (
     VisibleNormals,
     VonMisesFisher,
 )
+from steradian.distributions.learned import Learned
 from steradian.distributions.line import Exponential, Linear, Normal, Power, Tent, Truncated, Uniform
 from steradian.distributions.plane import Disk
 from steradian.distributions.tables import (
@@ -35,6 +36,7 @@ __all__ = [
     "Distribution",
     "Exponential",
     "FromPdf",
+    "Learned",
     "Linear",
     "Mixture",
     "Normal",

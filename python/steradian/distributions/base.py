@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from numbers import Real
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -93,6 +95,40 @@ class Distribution(ABC):
         """
         u = _internal.points(sequence, self.uniforms, n, seed, 0, 0)
         return self.sample(u[:, 0] if self.uniforms == 1 else u)
+
+    def to_dict(self) -> dict[str, Any]:
+        """What :meth:`from_dict` makes the same distribution of: name and arguments, as JSON can hold them.
+
+        Raises TypeError for distributions that are not made of numbers and other distributions alone.
+        """
+        raise TypeError(f"{type(self).__name__} is a distribution of your own, which cannot be written down")
+
+    def save(self, path: str | Path) -> None:
+        """Writes the distribution to a JSON file.
+
+        >>> import steradian as sr, tempfile, pathlib
+        >>> path = pathlib.Path(tempfile.mkdtemp()) / "mixture.json"
+        >>> (0.5 * sr.Uniform(0, 1) + 0.5 * sr.Uniform(0, 2)).save(path)
+        >>> sr.Distribution.load(path).pdf([0.5, 1.5])
+        array([0.75, 0.25])
+        """
+        Path(path).write_text(json.dumps(self.to_dict()), encoding="utf-8")
+
+    @staticmethod
+    def load(path: str | Path) -> Distribution:
+        """Reads what :meth:`save` wrote. Raises ValueError that names the file if it is none."""
+        try:
+            return Distribution.from_dict(json.loads(Path(path).read_text(encoding="utf-8")))
+        except (ValueError, TypeError, KeyError, RecursionError) as error:
+            raise ValueError(f"{path} holds no distribution: {error}") from None
+
+    @staticmethod
+    def from_dict(description: dict[str, Any]) -> Distribution:
+        """What :meth:`to_dict` described. Raises ValueError or TypeError if it is no distribution."""
+        value = _from_plain(description)
+        if not isinstance(value, Distribution):
+            raise ValueError('a distribution is an object with its name as "type"')
+        return value
 
     def __mul__(self, other: Distribution | float) -> Product | Mixture | WeightedSum:
         """``p * q`` is the product, of independent coordinates; ``p * 0.5`` a part of a mixture."""
@@ -207,6 +243,14 @@ class Compiled(Distribution):
         arguments = ", ".join(f"{name}={_short(value)}" for name, value in self._arguments.items())
         return f"{type(self).__name__}({arguments})"
 
+    def to_dict(self) -> dict[str, Any]:
+        """What :meth:`from_dict` makes the same distribution of: name and arguments, as JSON can hold them.
+
+        Raises TypeError if an argument is a function.
+        """
+        arguments = {name: _to_plain(value) for name, value in self._arguments.items()}
+        return {"type": type(self).__name__, **arguments}
+
     def __reduce__(self) -> tuple[Any, ...]:
         return _remake, (type(self), self._arguments)
 
@@ -279,6 +323,34 @@ def _checked(what: str, value: object, n: int, width: int) -> Array:
         wanted = f"({n}, {width})" if width > 1 else f"({n},)"
         raise ValueError(f"{what} returned shape {found}; it must be {wanted}")
     return array
+
+
+def _to_plain(value: Any) -> Any:
+    """A value as JSON can hold it."""
+    if isinstance(value, Distribution):
+        return value.to_dict()
+    if isinstance(value, np.ndarray | np.generic):
+        return _to_plain(value.tolist())
+    if isinstance(value, list | tuple):
+        return [_to_plain(item) for item in value]
+    if value is None or isinstance(value, bool | int | float | str):
+        return value
+    raise TypeError(f"{value!r} cannot be written down")
+
+
+def _from_plain(value: Any) -> Any:
+    """What :func:`_to_plain` was given, but for lists instead of arrays."""
+    import steradian.distributions as known
+
+    if isinstance(value, list):
+        return [_from_plain(item) for item in value]
+    if not isinstance(value, dict):
+        return value
+    name = value.get("type")
+    kind = getattr(known, name, None) if isinstance(name, str) and name in known.__all__ else None
+    if not (isinstance(kind, type) and issubclass(kind, Compiled)):
+        raise ValueError(f"there is no distribution {name!r}")
+    return kind(**{key: _from_plain(item) for key, item in value.items() if key != "type"})
 
 
 def _short(value: object) -> str:

@@ -60,6 +60,8 @@ class Estimate:
     def interval(self, level: float = 0.95) -> tuple[float | Array, float | Array]:
         """The interval that holds the integral with probability ``level``, by Student's t.
 
+        It is never narrower than what rounding leaves unsure.
+
         >>> import steradian as sr
         >>> low, high = sr.integrate(lambda x: x * x, over=[(0, 1)], n=4096).interval()
         >>> low < 1 / 3 < high
@@ -67,7 +69,8 @@ class Estimate:
         """
         if not 0 < level < 1:
             raise ValueError(f"level is {level}; it must be between 0 and 1")
-        half = _internal.student_t(0.5 + 0.5 * level, self.dof) * self.stderr
+        rounding = 4 * np.finfo(float).eps * np.abs(self.mean)
+        half = _internal.student_t(0.5 + 0.5 * level, self.dof) * self.stderr + rounding
         return self.mean - half, self.mean + half
 
     @property

@@ -2,47 +2,23 @@
 
 from __future__ import annotations
 
-import math
-import warnings
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from steradian import _internal
-from steradian.distributions.base import Distribution, as_distribution
-from steradian.integration.errors import IntegrationWarning
+from steradian.distributions.base import Array, Distribution, as_distribution
 from steradian.integration.estimate import Estimate
-from steradian.integration.integrands import checked, prepare
-
-Array = NDArray[np.float64]
-
-Integrand = Callable[[Array], Any]
-"""From points, (n,) for one coordinate and (n, dim) otherwise, to (n,) or (n, m); or a native function."""
-
-DEFAULT_N = 1 << 16
-"""Evaluations if nothing else says when to stop."""
-
-SUSPICIOUS_SHARE = 0.25
-"""A single point with more than this share of the sum of many makes the error unreliable."""
-
-
-@dataclass(frozen=True)
-class IntegrationProgress:
-    """What is known between two rounds of points."""
-
-    n: int
-    """Evaluations so far."""
-    n_max: int | None
-    """How many there can be, if ``n`` was given."""
-    seconds: float
-    """Time so far."""
-    mean: list[float]
-    """The mean of each output so far."""
-    stderr: list[float]
-    """Its standard error."""
+from steradian.integration.integrands import Integrand, checked, prepare
+from steradian.integration.requests import (
+    IntegrationProgress,
+    box,
+    domains_of,
+    make_request,
+    to_estimate,
+    whole,
+)
 
 
 def integrate(
@@ -100,12 +76,14 @@ def integrate(
     """
     density = as_distribution(over)
     integrand, known = _with_controls(f, control, density.dim)
-    domains = (
-        [(density._core, _box("domain", domain, density.dim))] if domain is not None else _domains([density])
+    boxes = domains_of([density])
+    if domain is not None:
+        boxes = [(density._core, box("domain", domain, density.dim))]
+    request = make_request(
+        n, rtol, atol, seconds, sequence, replicates, seed, nan, batch, threads, on_progress
     )
-    request = _request(n, rtol, atol, seconds, sequence, replicates, seed, nan, batch, threads, on_progress)
-    return _estimate(
-        _internal.integrate(density._core, integrand, request | {"known": known, "domains": domains})
+    return to_estimate(
+        _internal.integrate(density._core, integrand, request | {"known": known, "domains": boxes})
     )
 
 
@@ -145,13 +123,15 @@ def mis_integrate(
     """
     densities = _distributions(over)
     shares = (
-        [1] * len(densities) if counts is None else [_whole(f"counts[{i}]", c) for i, c in enumerate(counts)]
+        [1] * len(densities) if counts is None else [whole(f"counts[{i}]", c) for i, c in enumerate(counts)]
     )
     integrand, known = _with_controls(f, control, densities[0].dim)
-    request = _request(n, rtol, atol, seconds, sequence, replicates, seed, nan, batch, threads, on_progress)
+    request = make_request(
+        n, rtol, atol, seconds, sequence, replicates, seed, nan, batch, threads, on_progress
+    )
     request |= {"known": known, "domains": []}
     cores = [density._core for density in densities]
-    return _estimate(_internal.mis_integrate(cores, shares, heuristic, integrand, request))
+    return to_estimate(_internal.mis_integrate(cores, shares, heuristic, integrand, request))
 
 
 def ris_integrate(
@@ -200,10 +180,12 @@ def ris_integrate(
     else:
         raise TypeError(f"target must be a distribution or a function of points, not {target!r}")
     integrand = prepare(f, density.dim)
-    request = _request(n, rtol, atol, seconds, sequence, replicates, seed, nan, batch, threads, on_progress)
-    request |= {"known": [], "domains": _domains([density])}
-    chosen = _whole("candidates", candidates)
-    return _estimate(_internal.ris_integrate(density._core, goal, chosen, integrand, request))
+    request = make_request(
+        n, rtol, atol, seconds, sequence, replicates, seed, nan, batch, threads, on_progress
+    )
+    request |= {"known": [], "domains": domains_of([density])}
+    chosen = whole("candidates", candidates)
+    return to_estimate(_internal.ris_integrate(density._core, goal, chosen, integrand, request))
 
 
 def _distributions(values: object) -> list[Distribution]:
@@ -216,30 +198,6 @@ def _distributions(values: object) -> list[Distribution]:
     if not values:
         raise ValueError("over is empty; it must hold at least one distribution")
     return list(values)
-
-
-def _domains(densities: Sequence[Distribution]) -> list[tuple[_internal.Density, list[tuple[float, float]]]]:
-    """The boxes that densities should cover, if they know."""
-    cores = [density._core for density in densities]
-    return [(core, domain) for core in cores if (domain := core.domain()) is not None]
-
-
-def _box(argument: str, value: object, dim: int) -> list[tuple[float, float]]:
-    """(low, high) for each dimension, or an error that names the argument."""
-    try:
-        box = np.asarray(value, float)
-    except (TypeError, ValueError):
-        raise TypeError(f"{argument} must be (low, high) for each dimension, not {value!r}") from None
-    if box.shape == (2,) and dim == 1:
-        box = box.reshape(1, 2)
-    if box.shape != (dim, 2):
-        raise ValueError(
-            f"{argument} has shape {box.shape}; it must be (low, high) for each of {dim} dimensions"
-        )
-    for j, (low, high) in enumerate(box):
-        if not (math.isfinite(low) and math.isfinite(high) and low < high):
-            raise ValueError(f"{argument}[{j}] is ({low}, {high}); it must be finite, and low below high")
-    return [(float(low), float(high)) for low, high in box]
 
 
 def _with_controls(f: Integrand, control: object, dim: int) -> tuple[Any, list[float]]:
@@ -262,86 +220,3 @@ def _with_controls(f: Integrand, control: object, dim: int) -> tuple[Any, list[f
         return np.column_stack([main(x), *(g(x) for g in functions)])
 
     return both, known
-
-
-def _whole(argument: str, value: object) -> int:
-    """A positive whole number, or an error that names the argument."""
-    if isinstance(value, bool) or not isinstance(value, int | float | np.integer) or value != value // 1:
-        raise TypeError(f"{argument} must be a whole number, not {value!r}")
-    if not 0 < int(value) < 1 << 63:
-        raise ValueError(f"{argument} is {value}; it must be positive")
-    return int(value)
-
-
-def _request(
-    n: int | None,
-    rtol: float,
-    atol: float,
-    seconds: float | None,
-    sequence: str,
-    replicates: int,
-    seed: int,
-    nan: str,
-    batch: int,
-    threads: int,
-    on_progress: Callable[[IntegrationProgress], object] | None,
-) -> dict[str, Any]:
-    """The plan, as compiled code wants it."""
-    if n is None and not rtol and not atol and seconds is None:
-        n = DEFAULT_N
-    if nan not in ("raise", "zero"):
-        raise ValueError(f'nan is {nan!r}; it must be "raise" or "zero"')
-    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or not 0 <= seed < 1 << 64:
-        raise ValueError(f"seed is {seed!r}; it must be a whole number from 0 to 2^64 - 1")
-    if not 0 <= threads <= _internal.MAX_THREADS:
-        raise ValueError(f"threads is {threads}; it must be from 0 to {_internal.MAX_THREADS}")
-    on_round = None
-    if on_progress is not None:
-        on_round = lambda *values: on_progress(IntegrationProgress(*values))  # noqa: E731
-    return {
-        "sequence": sequence,
-        "replicates": _whole("replicates", replicates),
-        "seed": int(seed),
-        "n": None if n is None else _whole("n", n),
-        "rtol": float(rtol or 0.0),
-        "atol": float(atol or 0.0),
-        "seconds": None if seconds is None else float(seconds),
-        "batch": _whole("batch", batch),
-        "nan_as_zero": nan == "zero",
-        "threads": threads,
-        "on_round": on_round,
-    }
-
-
-def _estimate(integral: _internal.Integral) -> Estimate:
-    """What the user gets; warns of what makes it unreliable."""
-    m = len(integral.mean)
-    covariance = np.array(integral.covariance).reshape(m, m)
-    stderr = np.sqrt(np.maximum(np.diag(covariance), 0))
-    if integral.largest_share > SUSPICIOUS_SHARE and integral.n > 100:
-        warnings.warn(
-            f"a single one of {integral.n} points makes up {integral.largest_share:.0%} of the sum: the "
-            f"error is unreliable, and a density nearer to f is needed",
-            IntegrationWarning,
-            stacklevel=3,
-        )
-    if integral.nans:
-        warnings.warn(
-            f"f was not finite at {integral.nans} of {integral.n} points, which count as 0",
-            IntegrationWarning,
-            stacklevel=3,
-        )
-    return Estimate(
-        mean=integral.mean[0] if m == 1 else np.array(integral.mean),
-        stderr=float(stderr[0]) if m == 1 else stderr,
-        n=integral.n,
-        dof=integral.dof,
-        seconds=integral.seconds,
-        nans=integral.nans,
-        covariance=None if m == 1 else covariance,
-        diagnostics={
-            "effective_n": integral.effective_n,
-            "largest_share": integral.largest_share,
-            "not_drawn": integral.not_drawn,
-        },
-    )

@@ -13,6 +13,9 @@ from steradian import _internal
 
 Array = NDArray[np.float64]
 
+Integrand = Callable[[Array], Any]
+"""From points, (n,) for one coordinate and (n, dim) otherwise, to (n,) or (n, m); or a native function."""
+
 SIGNATURES = """\
     double f(double x)                              one dimension
     double f(const double *x, int64_t dim)          a point

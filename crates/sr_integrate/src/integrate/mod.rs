@@ -71,10 +71,12 @@ pub enum IntegrateError {
         value: f64,
     },
     /// A value that is finite only before it is divided by the density.
-    #[error("f / p overflows at x = {}, where the density is {pdf}", point(x))]
+    #[error("f / p overflows at x = {}, where f is {value} and the density {pdf}", point(x))]
     Overflow {
         /// The point.
         x: Vec<f64>,
+        /// What f is there.
+        value: f64,
         /// The density there, or what takes its place.
         pdf: f64,
     },

@@ -294,7 +294,7 @@ fn add_block(
         (0..outputs).for_each(|a| part.extend_from_slice(&f[a * n + from..a * n + from + len]));
         let x = Columns::new(&drawn.x, len);
         let shape = [outputs, task.len];
-        let tally = Tally::new(x, &mut part, &drawn.factor, shape, &drawn.kept, sums.keeps_moments());
+        let tally = Tally::new(x, &part, &drawn.factor, shape, &drawn.kept, sums.keeps_moments());
         sums.add(task.technique, &task.replicates, tally)?;
         from += len;
     }

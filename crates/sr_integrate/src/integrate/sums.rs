@@ -21,64 +21,62 @@ pub struct Tally {
     asked: u64,
     drawn: u64,
     nans: u64,
-    /// The first point at which f is not finite, or f · factor if that alone is not.
+    /// The first point that cannot be added.
     first: Option<Odd>,
 }
 
-/// A point that cannot be added.
+/// A point that cannot be added: f, or at least f · factor, is not finite there.
 struct Odd {
     x: Vec<f64>,
-    /// What is not finite there.
     value: f64,
-    /// If that is f · factor: the factor.
-    factor: Option<f64>,
+    factor: f64,
 }
 
 impl Tally {
-    /// - `f`: the values of each output, one after the other, at the points `x`; is overwritten
+    /// - `f`: the values of each output, one after the other, at the points `x`
     /// - `factor`: by what they are multiplied
     /// - `[outputs, len]`: the number of outputs; how many points each replicate was to have. Those missing count as 0
     /// - `kept`: how many each replicate has
     pub fn new(
         x: Columns<'_>,
-        f: &mut [f64],
+        f: &[f64],
         factor: &[f64],
         [outputs, len]: [usize; 2],
         kept: &[usize],
         keep_moments: bool,
     ) -> Self {
         let (n, asked) = (factor.len(), len * kept.len());
+        let mut terms = Vec::with_capacity(f.len());
+        for column in f.chunks(n.max(1)) {
+            terms.extend(column.iter().zip(factor).map(|(f, factor)| f * factor));
+        }
         let mut tally = Self {
             outputs,
             sums: Vec::new(),
             moments: Moments::default(),
-            summary: Summary::default(),
+            summary: Summary::of(&terms[..n]),
             asked: asked as u64,
             drawn: n as u64,
             nans: 0,
             first: None,
         };
-        if n > 0 {
-            tally.remove_odd(x, f, None);
-            for column in f.chunks_mut(n) {
-                column.iter_mut().zip(factor).for_each(|(f, factor)| *f *= factor);
-            }
-            tally.remove_odd(x, f, Some(factor));
-            tally.summary = Summary::of(&f[..n]);
+        if !(tally.summary.sum.is_finite() && Summary::of(&terms[n..]).sum.is_finite()) {
+            tally.remove_odd(x, f, factor, &mut terms);
+            tally.summary = Summary::of(&terms[..n]);
         }
         if !keep_moments {
             let mut from = 0;
             for &kept in kept {
-                let column = |a: usize| &f[a * n + from..a * n + from + kept];
+                let column = |a: usize| &terms[a * n + from..a * n + from + kept];
                 tally.sums.extend((0..outputs).map(|a| Summary::of(column(a)).sum));
                 from += kept;
             }
         } else if n == asked {
-            tally.moments = Moments::of_columns(f, n);
+            tally.moments = Moments::of_columns(&terms, n);
         } else {
             let mut padded = Vec::with_capacity(asked * outputs.max(1));
             for a in 0..outputs.max(1) {
-                padded.extend_from_slice(f.get(a * n..(a + 1) * n).unwrap_or_default());
+                padded.extend_from_slice(terms.get(a * n..(a + 1) * n).unwrap_or_default());
                 padded.resize((a + 1) * asked, 0.0);
             }
             tally.moments = Moments::of_columns(&padded, asked);
@@ -86,19 +84,14 @@ impl Tally {
         tally
     }
 
-    /// Counts points with values that are not finite, and makes these 0. `factor`: by what they were multiplied.
-    fn remove_odd(&mut self, x: Columns<'_>, values: &mut [f64], factor: Option<&[f64]>) {
-        if Summary::of(values).sum.is_finite() {
-            return;
-        }
-        let n = x.len();
+    /// Counts points with terms that are not finite, and makes these 0.
+    fn remove_odd(&mut self, x: Columns<'_>, f: &[f64], factor: &[f64], terms: &mut [f64]) {
+        let n = factor.len();
         for i in 0..n {
-            let odd = (0..self.outputs).map(|a| values[a * n + i]).find(|value| !value.is_finite());
-            let Some(value) = odd else { continue };
+            let Some(a) = (0..self.outputs).find(|a| !terms[a * n + i].is_finite()) else { continue };
             self.nans += 1;
-            let factor = factor.map(|factor| factor[i]);
-            self.first.get_or_insert_with(|| Odd { x: x.point(i), value, factor });
-            (0..self.outputs).for_each(|a| values[a * n + i] = 0.0);
+            self.first.get_or_insert_with(|| Odd { x: x.point(i), value: f[a * n + i], factor: factor[i] });
+            (0..self.outputs).for_each(|a| terms[a * n + i] = 0.0);
         }
     }
 }
@@ -145,9 +138,9 @@ impl Sums {
             return Ok(());
         };
         let x = x.clone();
-        Err(match factor {
-            Some(factor) => IntegrateError::Overflow { x, pdf: 1.0 / factor },
-            None => IntegrateError::NotFinite { x, value: *value, count: self.nans, n: self.n },
+        Err(match value.is_finite() {
+            true => IntegrateError::Overflow { x, value: *value, pdf: 1.0 / factor },
+            false => IntegrateError::NotFinite { x, value: *value, count: self.nans, n: self.n },
         })
     }
 

@@ -1,5 +1,6 @@
 //! Integrals and the densities that they sample.
 
+mod adapt;
 mod arrays;
 mod check;
 mod density;
@@ -20,6 +21,9 @@ pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<Density>()?;
     module.add_class::<native::Native>()?;
     module.add_class::<run::Integral>()?;
+    module.add_class::<adapt::Adapted>()?;
+    module.add_function(wrap_pyfunction!(adapt::adapt, module)?)?;
+    module.add_function(wrap_pyfunction!(adapt::learned, module)?)?;
     module.add_function(wrap_pyfunction!(run::integrate, module)?)?;
     module.add_function(wrap_pyfunction!(run::mis_integrate, module)?)?;
     module.add_function(wrap_pyfunction!(run::ris_integrate, module)?)?;

@@ -125,7 +125,7 @@ fn integrate_error(py: Python<'_>, error: IntegrateError) -> PyErr {
         IntegrateError::Foreign(error) => foreign_error(py, error),
         IntegrateError::Density(error) => density_error(py, error),
         IntegrateError::NotFinite { x, value, count, .. } => raise("IntegrandError", x, value, count),
-        IntegrateError::Overflow { x, .. } => raise("IntegrandError", x, f64::INFINITY, 1),
+        IntegrateError::Overflow { x, value, .. } => raise("IntegrandError", x, value, 1),
         IntegrateError::Hole { x, value } => raise("SupportError", x, value, 1),
         IntegrateError::Plan(_) | IntegrateError::Outputs { .. } => PyValueError::new_err(error.to_string()),
     }
