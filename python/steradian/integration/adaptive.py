@@ -18,7 +18,7 @@ from steradian.integration.estimate import Estimate
 from steradian.integration.integrands import Integrand, prepare
 from steradian.integration.requests import IntegrationProgress, domains_of, make_request, to_estimate
 
-DISAGREEMENT = 1e-3
+DISAGREEMENT = 1e-4
 """Below this probability, rounds that should estimate the same do not."""
 
 DEFAULT_N = 1 << 17

@@ -1,12 +1,11 @@
 //! Learn a density, then integrate with it.
 
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use rayon::ThreadPool;
 use sr_sampling::sequence::mix::derive_key;
-use statrs::distribution::{ContinuousCDF, StudentsT};
-use statrs::function::gamma::gamma_ur;
+use statrs::function::beta::beta_reg;
 
 use super::learn::{Learning, learn};
 use super::learned::Learned;
@@ -23,17 +22,17 @@ pub struct Adapted {
     pub density: Arc<Learned>,
     /// What each round of learning estimated.
     pub rounds: Vec<Round>,
-    /// The sum of squared differences between the integral and rounds that saw enough, over their variances.
+    /// Squared differences of the integral, and of rounds that saw enough, to their common mean, over their variances.
     pub chi2: f64,
     /// Its degrees of freedom: rounds that saw enough, times outputs.
     pub dof: u64,
-    /// The probability of a larger `chi2` if all estimate the same; 1 if there is nothing to compare.
+    /// The probability of such differences if all estimate the same; 1 if there is nothing to compare.
     pub q: f64,
 }
 
 impl Adapted {
     /// Below this, [`Adapted::q`] asks for a warning: the rounds disagree, and no error can be trusted.
-    pub const DISAGREEMENT: f64 = 1e-3;
+    pub const DISAGREEMENT: f64 = 1e-4;
 
     /// Do the rounds disagree?
     pub fn disagrees(&self) -> bool {
@@ -46,8 +45,10 @@ impl Adapted {
     }
 }
 
-/// A round has seen enough if so many equal points would do as well.
+/// A round has seen enough if so many equal points would do as well …
 const ENOUGH: f64 = 200.0;
+/// … which are this share of its points: means of few large values are not normal, and would be thought to disagree.
+const ENOUGH_SHARE: f64 = 0.2;
 
 /// Learns a density over `base` and integrates with it. `plan.n` and `plan.seconds` limit both together; a quarter of
 /// either is for learning at most.
@@ -67,6 +68,7 @@ pub fn adapt(
         seed: derive_key(plan.seed, 0xada9),
         evaluations: plan.n.map_or(1 << 24, |n| n / 4),
         rtol: plan.rtol,
+        until: plan.seconds.map(|seconds| began + Duration::from_secs_f64((0.25 * seconds).min(1e9))),
     };
     let mut spent = 0;
     let mut tell = |round: &Round| {
@@ -95,47 +97,80 @@ pub fn adapt(
     let single = Single(density.clone());
     let mut integral = integrate(&[(&single, 1)], integrand, &rest, pool, &mut tell)?;
     integral.seconds = began.elapsed().as_secs_f64();
-    let (chi2, dof) = chi2(&lesson.rounds, &integral);
-    let q = if dof > 0 { gamma_ur(0.5 * dof as f64, (0.5 * chi2).max(f64::MIN_POSITIVE)) } else { 1.0 };
+    let Agreement { chi2, dof, q } = agreement(&lesson.rounds, &integral);
     Ok(Adapted { integral, density, rounds: lesson.rounds, chi2, dof, q })
 }
 
-/// Each round's difference to the integral, as the number of standard deviations of a normal variable that is as
-/// unlikely as Student's t of it: errors from few replicates are themselves uncertain.
-fn chi2(rounds: &[Round], integral: &Integral) -> (f64, u64) {
-    let errors = integral.stderr();
-    let (mut sum, mut dof) = (0.0, 0);
-    for round in rounds.iter().filter(|round| round.effective_n >= ENOUGH) {
-        for (a, error) in errors.iter().enumerate() {
-            let variance = round.stderr[a].powi(2) + error * error;
-            if !(variance > 0.0 && variance.is_finite()) {
-                continue;
-            }
-            let t = (round.mean[a] - integral.mean[a]) / variance.sqrt();
-            // Welch & Satterthwaite.
-            let own = round.stderr[a].powi(4) / f64::from(REPLICATES - 1);
-            let theirs = error.powi(4) / (integral.dof.max(1) as f64);
-            sum += as_normal(t, variance * variance / (own + theirs)).powi(2);
-            dof += 1;
-        }
-    }
-    (sum, dof)
+/// Do estimates of the same agree?
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Agreement {
+    chi2: f64,
+    dof: u64,
+    q: f64,
 }
 
-/// The normal deviation that is as unlikely as `t` with `dof` degrees of freedom.
-fn as_normal(t: f64, dof: f64) -> f64 {
-    let below = StudentsT::new(0.0, 1.0, dof).map_or(0.0, |student| student.cdf(-t.abs()));
-    if below > 0.0 { std::f64::consts::SQRT_2 * statrs::function::erf::erfc_inv(2.0 * below) } else { 40.0 }
+fn agreement(rounds: &[Round], integral: &Integral) -> Agreement {
+    let saw_enough = |round: &&Round| round.effective_n >= ENOUGH.max(ENOUGH_SHARE * round.n as f64);
+    let rounds: Vec<&Round> = rounds.iter().filter(saw_enough).collect();
+    let outputs = integral.mean.len();
+    let mut all = Agreement { chi2: 0.0, dof: 0, q: 1.0 };
+    for (a, stderr) in integral.stderr().into_iter().enumerate() {
+        let mut estimates = vec![(integral.mean[a], stderr, integral.dof as f64)];
+        estimates
+            .extend(rounds.iter().map(|round| (round.mean[a], round.stderr[a], f64::from(REPLICATES - 1))));
+        estimates.retain(|(mean, stderr, _)| mean.is_finite() && *stderr > 0.0 && stderr.is_finite());
+        let one = welch(&estimates);
+        all.chi2 += one.chi2;
+        all.dof += one.dof;
+        all.q = all.q.min(one.q * outputs as f64);
+    }
+    all
+}
+
+/// Are (mean, standard error, its degrees of freedom) of the same? The errors are uncertain themselves, which chi-square
+/// would take for disagreement (B. L. Welch, "On the comparison of several mean values", Biometrika 38, 1951).
+fn welch(estimates: &[(f64, f64, f64)]) -> Agreement {
+    let k = estimates.len() as f64;
+    if estimates.len() < 2 {
+        return Agreement { chi2: 0.0, dof: 0, q: 1.0 };
+    }
+    let weight = |stderr: f64| stderr.powi(-2);
+    let total: f64 = estimates.iter().map(|&(_, stderr, _)| weight(stderr)).sum();
+    let mean = estimates.iter().map(|&(mean, stderr, _)| weight(stderr) / total * mean).sum::<f64>();
+    let chi2: f64 = estimates.iter().map(|&(m, stderr, _)| weight(stderr) * (m - mean).powi(2)).sum();
+    let doubt: f64 =
+        estimates.iter().map(|&(_, stderr, dof)| (1.0 - weight(stderr) / total).powi(2) / dof.max(1.0)).sum();
+    let f = chi2 / (k - 1.0) / (1.0 + 2.0 * (k - 2.0) / (k * k - 1.0) * doubt);
+    let dof = (k * k - 1.0) / (3.0 * doubt);
+    // P(F > f), by the incomplete beta function.
+    let q =
+        if f.is_finite() { beta_reg(0.5 * dof, 0.5 * (k - 1.0), dof / (dof + (k - 1.0) * f)) } else { 0.0 };
+    Agreement { chi2, dof: estimates.len() as u64 - 1, q }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    /// Two means: F is the square of Welch's t, here with as many degrees of freedom as Welch & Satterthwaite's.
     #[test]
-    fn deviations_are_translated() {
-        assert!((as_normal(2.0, 1e9) - 2.0).abs() < 1e-6);
-        assert!((as_normal(2.131_449_5, 15.0) - 1.959_964).abs() < 1e-4);
-        assert_eq!(as_normal(f64::INFINITY, 15.0), 40.0);
+    fn two_means_are_a_t_test() {
+        let agreement = welch(&[(1.0, 0.3, 10.0), (2.0, 0.4, 20.0)]);
+        assert!((agreement.chi2 - 4.0).abs() < 1e-12);
+        let dof = 0.25_f64.powi(2) / (0.3_f64.powi(4) / 10.0 + 0.4_f64.powi(4) / 20.0);
+        let expected = beta_reg(0.5 * dof, 0.5, dof / (dof + 4.0));
+        assert!((agreement.q - expected).abs() < 1e-9, "{} {expected}", agreement.q);
+    }
+
+    #[test]
+    fn what_differs_disagrees() {
+        let same = [(1.0, 0.1, 15.0), (1.05, 0.1, 15.0), (0.95, 0.2, 15.0)];
+        assert!(welch(&same).q > 0.5);
+        let mut other = same.to_vec();
+        other.push((2.0, 0.05, 31.0));
+        assert!(welch(&other).q < 1e-6);
+        assert_eq!(welch(&same[..1]).q, 1.0);
+        // Few degrees of freedom: chi-square would say 10⁻⁴.
+        assert!(welch(&[(0.0, 1.0, 2.0), (5.5, 1.0, 2.0)]).q > 0.01);
     }
 }

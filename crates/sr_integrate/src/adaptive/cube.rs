@@ -65,6 +65,16 @@ impl CubeDensity {
         Self { components, shares: self.shares.clone() }
     }
 
+    /// Components with their shares, which sum to [`PARTS`].
+    pub(super) fn from_shares(components: Vec<Component>, shares: Vec<u32>) -> Self {
+        Self { components, shares }
+    }
+
+    /// Of each component, in [`PARTS`].
+    pub fn shares(&self) -> &[u32] {
+        &self.shares
+    }
+
     /// The number of coordinates, and of uniforms that a sample consumes.
     pub fn dim(&self) -> usize {
         self.components[0].axes().len()

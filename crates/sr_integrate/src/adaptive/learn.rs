@@ -9,6 +9,7 @@
 //! 2001). Narrow peaks are found from their slopes that way, and of several peaks the lower are not lost.
 
 use std::sync::Arc;
+use std::time::Instant;
 
 use rayon::ThreadPool;
 use sr_sampling::sequence::mix::{derive_key, mix64};
@@ -35,6 +36,8 @@ pub struct Learning {
     pub evaluations: u64,
     /// Enough has been learned if what remains to be done for this relative error costs less than what was done.
     pub rtol: f64,
+    /// No round begins later.
+    pub until: Option<Instant>,
 }
 
 /// What was learned.
@@ -71,10 +74,13 @@ pub fn learn(
     let mut rounds: Vec<Round> = Vec::new();
     let (mut spent, mut best, mut stale) = (0, None::<(f64, CubeDensity)>, 0);
     let mut size = (learning.evaluations / 10).clamp(MIN_ROUND, 1 << 20);
-    if learning.rtol > 0.0 {
+    // Nobody knows how much is needed, or how long f takes: rounds begin small, and grow.
+    let grows = learning.rtol > 0.0 || learning.until.is_some();
+    if grows {
         size = size.min(2 * MIN_ROUND);
     }
-    while rounds.is_empty() || spent + size <= learning.evaluations {
+    let in_time = || learning.until.is_none_or(|until| Instant::now() < until);
+    while rounds.is_empty() || spent + size <= learning.evaluations && in_time() {
         let seed = derive_key(learning.seed, rounds.len() as u32);
         let (seen, scales, blocks) = round(base, &pupil.cube, integrand, (size, seed), pool)?;
         on_round(&seen)?;
@@ -96,7 +102,7 @@ pub fn learn(
         if settled && (stale >= 2 || cost < GOOD_ENOUGH) || enough {
             break;
         }
-        if learning.rtol > 0.0 {
+        if grows {
             size += size / 2;
         }
     }

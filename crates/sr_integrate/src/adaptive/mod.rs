@@ -20,6 +20,7 @@ mod cube;
 mod learn;
 mod learned;
 mod matrix;
+mod parts;
 mod round;
 mod training;
 
@@ -29,4 +30,5 @@ pub use component::{Component, Frame};
 pub use cube::{CubeDensity, PARTS};
 pub use learn::{Learning, Lesson, learn};
 pub use learned::Learned;
+pub use parts::{Part, PartsError};
 pub use round::Round;
