@@ -71,6 +71,8 @@ class Estimate:
             raise ValueError(f"level is {level}; it must be between 0 and 1")
         rounding = 4 * np.finfo(float).eps * np.abs(self.mean)
         half = _internal.student_t(0.5 + 0.5 * level, self.dof) * self.stderr + rounding
+        if np.ndim(half) == 0:
+            return float(self.mean - half), float(self.mean + half)
         return self.mean - half, self.mean + half
 
     @property
