@@ -3,6 +3,7 @@
 
     python3 dev.py render scenes/cornell-box.xml     build if need be, then: steradian render scenes/...
     python3 dev.py info scenes/cornell-box.xml       the same for any other steradian command
+    python3 dev.py article --open                    run the experiments of an article, and show their page
     python3 dev.py build                             build only
     python3 dev.py test                              formatting, lints, types, documentation, all tests
     python3 dev.py test -k merge                     only Python's tests, with these arguments for pytest
@@ -33,7 +34,6 @@ def python_of(venv):
 
 PYTHON = python_of(VENV)
 STAMP = VENV / "steradian-built-from.txt"
-TOOLS_STAMP = VENV / "steradian-test-tools.txt"
 SOURCES = (
     "crates",
     "python",
@@ -69,6 +69,8 @@ def main(arguments):
     build()
     if arguments[0] == "build":
         return 0
+    if arguments[0] == "article":
+        install_extra("article")
     command = [str(PYTHON), "-m", "steradian", *arguments]
     if os.name == "posix":
         # The command takes this process's place, so that Ctrl-C reaches it alone.
@@ -101,7 +103,7 @@ def test(pytest_arguments):
     for name, command, environment in checks:
         if not run_check(name, command, environment, closing_lines):
             failed.append(name)
-    install_test_tools()
+    install_extra("test")
     for name, command in [] if pytest_arguments else python_checks():
         if not run_check(name, command, {}, closing_lines):
             failed.append(name)
@@ -179,13 +181,14 @@ def build():
     once(STAMP, source_hash(), "building; the first time takes some minutes", [str(ROOT)])
 
 
-def install_test_tools():
-    """Installs what pyproject.toml lists for tests."""
+def install_extra(name):
+    """Installs what pyproject.toml lists for tests, or for a command."""
     import tomllib
 
     with open(ROOT / "pyproject.toml", "rb") as file:
-        tools = tomllib.load(file)["project"]["optional-dependencies"]["test"]
-    once(TOOLS_STAMP, "\n".join(tools), "installing what the tests need", tools)
+        wanted = tomllib.load(file)["project"]["optional-dependencies"][name]
+    stamp = VENV / f"steradian-{name}-tools.txt"
+    once(stamp, "\n".join(wanted), f"installing what the {name} needs", wanted)
 
 
 def once(stamp, wanted, what, requirements, python=PYTHON):

@@ -52,7 +52,8 @@ class Report:
     def _finding(self) -> str:
         if self.p_value == 0 and not np.isfinite(self.statistic):
             return self.remark
-        return f"p = {self.p_value:.2g}; {self.remark}"
+        size = "p < 1e-300" if self.p_value < 1e-300 else f"p = {self.p_value:.2g}"
+        return f"{size}; {self.remark}"
 
     def __str__(self) -> str:
         return f"{self.subject}: {self._finding()}"

@@ -11,6 +11,7 @@ import sys
 from collections.abc import Sequence
 
 from steradian.cli.arguments import parse
+from steradian.cli.article import article
 from steradian.cli.info import info
 from steradian.cli.render import render
 
@@ -36,7 +37,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _run(argv: Sequence[str] | None) -> int:
     arguments = parse(argv)
-    command = {"render": render, "info": info}[arguments.command]
+    command = {"render": render, "info": info, "article": article}[arguments.command]
     try:
         return command(arguments)
     except BrokenPipeError:
