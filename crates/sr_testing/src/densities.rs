@@ -2,13 +2,15 @@
 
 use std::sync::Arc;
 
+use sr_integrate::adaptive::{Learned, Learning, learn};
 use sr_integrate::distributions::{
     Affine, Alias, AreaLight, Cone, Cosine, Discrete, Disk, Exponential, FromPdf, Linear, Mixture, Normal,
     ParameterError, PiecewiseConstant, PiecewiseLinear, Power, Product, Profile, Tabulated2D, Tent, Typed,
     Uniform, UniformBox, VisibleNormals, VonMisesFisher, Zonal, spherical_rectangle, spherical_triangle,
     truncate,
 };
-use sr_integrate::{Density, Space};
+use sr_integrate::integrate::Integrand;
+use sr_integrate::{Columns, Density, Space};
 use sr_sampling::Mix2;
 use sr_sampling::warp::{CosineHemisphere, UniformHemisphere};
 
@@ -59,6 +61,7 @@ pub fn densities() -> Vec<DensityCase> {
     in_space(&mut cases);
     directions(&mut cases);
     composites(&mut cases);
+    learned(&mut cases);
     cases.0
 }
 
@@ -275,6 +278,32 @@ fn composites(cases: &mut Cases) {
     let bell = arc(Product::new((0..3).map(|_| arc(Normal::new(0.0, 1.0))).collect()));
     let shear = vec![1.0, 0.0, 0.0, 0.9, 0.1, 0.0, -0.5, 2.0, 0.7];
     cases.add("correlated normal", Affine::new(bell, shear, vec![1.0, 2.0, 3.0]));
+}
+
+/// Over a box, and over directions.
+fn learned(cases: &mut Cases) {
+    let two_peaks = |x: Columns<'_>, f: &mut [f64]| {
+        for (i, f) in f.iter_mut().enumerate() {
+            let away = |at: f64| (0..x.dim()).map(|j| (x.get(i, j) - at).powi(2)).sum::<f64>();
+            *f = (-100.0 * away(0.25)).exp() + (-100.0 * away(0.75)).exp();
+        }
+    };
+    let lobe = |w: Columns<'_>, f: &mut [f64]| {
+        for (i, f) in f.iter_mut().enumerate() {
+            *f = (20.0 * w.get(i, 0)).exp();
+        }
+    };
+    let box3: Arc<dyn Density> = Arc::new(UniformBox::new(&[[0.0, 1.0]; 3]).expect("a box"));
+    let sphere: Arc<dyn Density> = Arc::new(Zonal::new(Cone::SPHERE, [0.0, 0.0, 1.0]).expect("a sphere"));
+    let learning = Learning { seed: 1, evaluations: 20_000, rtol: 0.0, until: None };
+    let cubes = [
+        ("two peaks", learn(&box3, &mut Integrand::Parallel(&two_peaks), &learning, None, &mut |_| Ok(()))),
+        ("a lobe", learn(&sphere, &mut Integrand::Parallel(&lobe), &learning, None, &mut |_| Ok(()))),
+    ];
+    for ((name, lesson), base) in cubes.into_iter().zip([box3, sphere]) {
+        let lesson = lesson.expect("integrands of this file do not fail");
+        cases.add(format!("learned from {name}"), Ok(Learned::new(base, lesson.cube)));
+    }
 }
 
 impl DensityCase {

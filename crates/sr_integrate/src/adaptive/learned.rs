@@ -98,11 +98,16 @@ impl Density for Learned {
 }
 
 impl Inverse for Learned {
-    fn invert(&self, x: Columns<'_>, u: ColumnsMut<'_>) -> Result<(), DensityError> {
+    fn invert(&self, x: Columns<'_>, mut u: ColumnsMut<'_>) -> Result<(), DensityError> {
         let n = x.len();
         let mut v = vec![0.0; n * self.uniforms()];
         self.base_inverse()?.invert(x, ColumnsMut::new(&mut v, n))?;
-        self.cube.components()[0].invert(Columns::new(&v, n), u, &mut vec![0.0; n]);
+        let v = Columns::new(&v, n);
+        self.cube.components()[0].invert(v, u.reborrow(), &mut vec![0.0; n]);
+        // What is not in the support of the base has no uniforms.
+        for i in (0..n).filter(|&i| (0..v.dim()).any(|j| v.get(i, j).is_nan())) {
+            (0..v.dim()).for_each(|j| u.set(i, j, f64::NAN));
+        }
         Ok(())
     }
 }
