@@ -156,16 +156,8 @@ def _errors(page: Chapter) -> plots.Plot:
         names, errors, color=[plots.BLUE, plots.GREEN, plots.ORANGE], height=0.6
     )
     for place, error in enumerate(errors):
-        axes.text(
-            error * 0.92,
-            place,
-            f"{error:.2g}",
-            ha="right",
-            va="center",
-            color="white",
-            fontsize=9.5,
-        )
-    axes.set_xlim(min(errors) / 6, max(errors) * 1.3)
+        axes.text(error, place, f" {error:.2g}", va="center", fontsize=9.5)
+    axes.set_xlim(min(errors) / 6, max(errors) * 3)
     axes.invert_yaxis()
     return (
         made,

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import tempfile
+from pathlib import Path
 from typing import Any
 
 import steradian as sr
@@ -218,4 +220,8 @@ def _box(page: Chapter) -> None:
 
 
 def _png(result: sr.Result) -> bytes:
-    return result._repr_png_()
+    """The picture, a stop brighter."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "picture.png"
+        result.write(path, exposure=1)
+        return path.read_bytes()

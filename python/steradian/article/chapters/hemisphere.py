@@ -94,10 +94,17 @@ def tell(page: Chapter) -> None:
         sampling needs 6.4 times fewer samples.
     """)
     for density in ("uniform", "cosine"):
+        if density == "uniform":
+            estimate = page.run(overcast_sky, density=density, n=n)
+        else:
+            estimate = overcast_sky(density, n, page.next_seed())
         page.measure(
             f"∫ cos² θ dω, {density}",
-            page.run(overcast_sky, density=density, n=n),
+            estimate,
             2 * math.pi / 3,
+            claimed="2ρ E[<i>L</i> cos θ]"
+            if density == "uniform"
+            else "ρ E[<i>L</i>]",
             formula="2π/3",
         )
     page.text("Measured, in a hundred batches:")
