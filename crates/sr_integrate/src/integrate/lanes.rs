@@ -45,26 +45,74 @@ impl Work for Summarise<'_> {
         let (mut sum, mut absolute) = ([0.0; LANES], [0.0; LANES]);
         let (mut squares, mut largest) = ([0.0; LANES], [0.0_f64; LANES]);
         let (chunks, rest) = self.0.as_chunks::<LANES>();
-        for chunk in chunks {
+        let mut last = [0.0; LANES];
+        last[..rest.len()].copy_from_slice(rest);
+        for chunk in chunks.iter().chain([&last]) {
+            // A loop for each sum: compilers make one vector of each.
             for lane in 0..LANES {
-                let x = chunk[lane];
-                sum[lane] += x;
-                absolute[lane] += x.abs();
-                squares[lane] += x * x;
-                largest[lane] = if x.abs() > largest[lane] { x.abs() } else { largest[lane] };
+                sum[lane] += chunk[lane];
             }
-        }
-        for (lane, &x) in rest.iter().enumerate() {
-            sum[lane] += x;
-            absolute[lane] += x.abs();
-            squares[lane] += x * x;
-            largest[lane] = if x.abs() > largest[lane] { x.abs() } else { largest[lane] };
+            let mut size = [0.0; LANES];
+            for lane in 0..LANES {
+                size[lane] = chunk[lane].abs();
+            }
+            for lane in 0..LANES {
+                absolute[lane] += size[lane];
+            }
+            for lane in 0..LANES {
+                squares[lane] += size[lane] * size[lane];
+            }
+            for lane in 0..LANES {
+                largest[lane] = if size[lane] > largest[lane] { size[lane] } else { largest[lane] };
+            }
         }
         Summary {
             sum: total(sum),
             absolute: total(absolute),
             squares: total(squares),
             largest: largest.into_iter().fold(0.0, f64::max),
+        }
+    }
+}
+
+/// How many numbers are positive.
+pub fn count_positive(numbers: &[f64]) -> usize {
+    Isa::detect().run(CountPositive(numbers))
+}
+
+struct CountPositive<'a>(&'a [f64]);
+
+impl Work for CountPositive<'_> {
+    type Out = usize;
+
+    #[inline(always)]
+    fn run(self) -> usize {
+        let mut count = 0;
+        for &x in self.0 {
+            count += usize::from(x > 0.0);
+        }
+        count
+    }
+}
+
+/// Writes x · y, number by number.
+pub fn multiply(x: &[f64], y: &[f64], out: &mut [f64]) {
+    Isa::detect().run(Multiply { x, y, out });
+}
+
+struct Multiply<'a> {
+    x: &'a [f64],
+    y: &'a [f64],
+    out: &'a mut [f64],
+}
+
+impl Work for Multiply<'_> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run(self) {
+        for ((out, x), y) in self.out.iter_mut().zip(self.x).zip(self.y) {
+            *out = x * y;
         }
     }
 }
@@ -121,6 +169,7 @@ mod tests {
             assert_eq!(summary.absolute, numbers.iter().map(|x| x.abs()).sum::<f64>());
             assert_eq!(summary.squares, numbers.iter().map(|x| x * x).sum::<f64>());
             assert_eq!(summary.largest, f64::from((n - 1).max(0)));
+            assert_eq!(count_positive(&numbers), numbers.iter().filter(|x| **x > 0.0).count());
             let about_two: f64 = numbers.iter().map(|x| (x - 2.0) * (x - 3.0)).sum();
             assert_eq!(products(&numbers, 2.0, &numbers, 3.0), about_two);
         }

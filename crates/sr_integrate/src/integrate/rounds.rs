@@ -15,6 +15,7 @@ use rayon::prelude::*;
 use super::IntegrateError;
 use super::integral::Integral;
 use super::integrand::{Integrand, Parallel};
+use super::lanes::count_positive;
 use super::plan::Plan;
 use super::sums::{Sums, Tally};
 use super::technique::Technique;
@@ -242,7 +243,7 @@ fn draw(
     }
     technique.draw(Columns::new(u, n), ColumnsMut::new(x, n), factor)?;
     kept.clear();
-    kept.extend(factor.chunks(task.len).map(|factor| factor.iter().filter(|&&factor| factor > 0.0).count()));
+    kept.extend(factor.chunks(task.len).map(count_positive));
     if kept.iter().any(|&kept| kept < task.len) {
         let keep = |i: usize| factor[i] > 0.0;
         *x = x.chunks(n).flat_map(|column| (0..n).filter(|&i| keep(i)).map(|i| column[i])).collect();

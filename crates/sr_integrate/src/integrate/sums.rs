@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::IntegrateError;
 use super::integral::Integral;
-use super::lanes::Summary;
+use super::lanes::{Summary, multiply};
 use super::moments::Moments;
 use super::plan::Plan;
 use crate::columns::Columns;
@@ -46,9 +46,9 @@ impl Tally {
         keep_moments: bool,
     ) -> Self {
         let (n, asked) = (factor.len(), len * kept.len());
-        let mut terms = Vec::with_capacity(f.len());
-        for column in f.chunks(n.max(1)) {
-            terms.extend(column.iter().zip(factor).map(|(f, factor)| f * factor));
+        let mut terms = vec![0.0; f.len()];
+        for (terms, f) in terms.chunks_mut(n.max(1)).zip(f.chunks(n.max(1))) {
+            multiply(f, factor, terms);
         }
         let mut tally = Self {
             outputs,
@@ -68,7 +68,9 @@ impl Tally {
             let mut from = 0;
             for &kept in kept {
                 let column = |a: usize| &terms[a * n + from..a * n + from + kept];
-                tally.sums.extend((0..outputs).map(|a| Summary::of(column(a)).sum));
+                let whole = kept == n && outputs == 1;
+                let sum = |a: usize| if whole { tally.summary.sum } else { Summary::of(column(a)).sum };
+                tally.sums.extend((0..outputs).map(sum));
                 from += kept;
             }
         } else if n == asked {

@@ -1,0 +1,1 @@
+"""What ``benches/integrals.py`` measures, in the environment that it makes."""
