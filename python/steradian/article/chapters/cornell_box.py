@@ -167,9 +167,10 @@ def tell(page: Chapter) -> None:
         )
     page.text("""
         And a room whose answer is not known: the Cornell box, rendered with each strategy at the same
-        number of samples. They all solve the same equation; the table compares the mean of each image
-        with a long run of the default. <em>Light</em> looks at the lamp at every bounce, and goes on by
-        the material.
+        number of samples.
+        They all solve the same equation; the table compares the mean of each image with a long run of
+        the default, whose own error is counted as well. <em>Light</em> looks at the lamp at every
+        bounce, and goes on by the material.
     """)
     _box(page)
 

@@ -235,11 +235,11 @@ def _not_a_number(page: Chapter) -> None:
     page.text("""
         <h3>Something that is not a number</h3>
 
-        One 0/0 among a million values, and their mean is gone; skip it silently, and the answer is off.
+        One undefined value among a million, and their mean is gone; skip it silently, and the answer is off.
         The library stops and says where, or, asked with <code>nan="zero"</code>, counts.
     """)
     page.mistake(
-        "0/0 at a point",
+        "a value that is not a number",
         None,
         math.nan,
         "sr.integrate(lambda x: np.log(x - 1), over=sr.Uniform(0, 5))",
@@ -282,7 +282,7 @@ def _naive_errors(page: Chapter) -> None:
         "σ/√n for Sobol’ points",
         naive,
         25.0,
-        "the spread of independent scramblings",
+        "sr.integrate(f, over, replicates=32).stderr",
         lambda: _compare(claimed, one),
     )
     page.plot(
