@@ -104,12 +104,7 @@ impl Axis {
         let n = self.bins.len();
         let [low, high] = self.range();
         for ((&x, u), stretch) in x.iter().zip(u).zip(stretch) {
-            let mut i = 0;
-            let mut half = n / 2;
-            while half > 0 {
-                i += if x >= self.knots[i + half] { half } else { 0 };
-                half /= 2;
-            }
+            let i = self.bin(x);
             let Bin { start, width, at_start, at_end } = self.bins[i];
             let y = ((x - start) / width).clamp(0.0, 1.0);
             let bend = at_start + at_end - 2.0;
@@ -124,6 +119,20 @@ impl Axis {
                 n as f64 * width * (at_end * t * t + 2.0 * between + at_start * s * s) * (rest * rest);
             *stretch *= if x >= low && x <= high { slope } else { f64::INFINITY };
         }
+    }
+
+    /// The bin of a number: halved without a branch, for which bin is never foreseen.
+    #[inline(always)]
+    fn bin(&self, x: f64) -> usize {
+        let mut knots = &self.knots[..self.bins.len()];
+        let mut i = 0;
+        while knots.len() > 1 {
+            let half = knots.len() / 2;
+            let above = usize::from(x >= knots[half]);
+            i += above * half;
+            knots = &self.knots[i..i + half];
+        }
+        i
     }
 
     /// The map whose density is this one times a factor, constant in each of many equal steps of u, of which `floor`
@@ -165,7 +174,12 @@ impl Axis {
 /// infinite there, and is made large: maps then reach into singularities like 1 / √x and beyond.
 fn beyond(last: f64, before: f64) -> f64 {
     let ratio = last / before;
-    last * (ratio * ratio.max(1.0)).clamp(0.1, 1e4)
+    let rise = match ratio {
+        r if r > 2.0 => r.powi(8),
+        r if r > 1.0 => r * r,
+        r => r,
+    };
+    last * rise.clamp(0.1, 1e6)
 }
 
 /// Pushes knots apart that rounding has made equal.

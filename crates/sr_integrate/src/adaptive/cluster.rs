@@ -59,10 +59,12 @@ pub fn clusters(cloud: &Cloud, most: usize, key: u64) -> Vec<Cluster> {
     let variances = cloud.variances();
     let mut best: Option<(f64, Vec<Cluster>)> = None;
     let mut worse = 0;
-    for count in [1, 2, 3, 4, 6, 8, 12, 16, 24, 32].into_iter().take_while(|&count| count <= most) {
+    let parameters = |count: usize| count * (1 + cloud.dim + cloud.dim * (cloud.dim + 1) / 2);
+    let known =
+        |count: &usize| *count <= most && (*count == 1 || 2 * parameters(*count) < cloud.total() as usize);
+    for count in [1, 2, 3, 4, 6, 8, 12, 16, 24, 32].into_iter().take_while(known) {
         let (fit, found) = fit(cloud, count, &variances, derive_key(key, count as u32));
-        let parameters = found.len() * (1 + cloud.dim + cloud.dim * (cloud.dim + 1) / 2);
-        let merit = fit - 0.5 * parameters as f64 * cloud.total().max(2.0).ln();
+        let merit = fit - 0.5 * parameters(found.len()) as f64 * cloud.total().max(2.0).ln();
         if best.as_ref().is_none_or(|(known, _)| merit > *known) {
             (best, worse) = (Some((merit, found)), 0);
         } else {
@@ -81,7 +83,7 @@ fn fit(cloud: &Cloud, count: usize, variances: &[f64], key: u64) -> (f64, Vec<Cl
     let mut shares = nearest(cloud, &seeds(cloud, count, variances, key), variances);
     let mut last = f64::NEG_INFINITY;
     let mut found = Vec::new();
-    for _ in 0..30 {
+    for _ in 0..15 {
         found = shares.iter().filter_map(|share| cluster(cloud, share, variances)).collect::<Vec<Cluster>>();
         let total: f64 = found.iter().map(|cluster| cluster.share).sum();
         found.iter_mut().for_each(|cluster| cluster.share /= total);
@@ -91,14 +93,15 @@ fn fit(cloud: &Cloud, count: usize, variances: &[f64], key: u64) -> (f64, Vec<Cl
             let top = logs.iter().map(|log| log[i]).fold(f64::NEG_INFINITY, f64::max);
             let mut sum = 0.0;
             for log in &mut logs {
-                log[i] = (log[i] - top).exp();
+                let below = log[i] - top;
+                log[i] = if below > -30.0 { below.exp() } else { 0.0 };
                 sum += log[i];
             }
             logs.iter_mut().for_each(|log| log[i] *= cloud.weights[i] / sum);
             likelihood += cloud.weights[i] * (top + sum.ln());
         }
         shares = logs;
-        let done = likelihood - last < 1e-4 * cloud.total() * dim as f64;
+        let done = likelihood - last < 1e-3 * cloud.total() * dim as f64;
         last = likelihood;
         if done || found.len() == 1 {
             break;

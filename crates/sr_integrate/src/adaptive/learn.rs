@@ -73,7 +73,7 @@ pub fn learn(
     let mut pupil = Pupil::new(dim, derive_key(learning.seed, 0x1ea2));
     let mut rounds: Vec<Round> = Vec::new();
     let (mut spent, mut best, mut stale) = (0, None::<(f64, CubeDensity)>, 0);
-    let mut size = (learning.evaluations / 10).clamp(MIN_ROUND, 1 << 20);
+    let mut size = (learning.evaluations / 10).clamp(MIN_ROUND, 1 << 16);
     // Nobody knows how much is needed, or how long f takes: rounds begin small, and grow.
     let grows = learning.rtol > 0.0 || learning.until.is_some();
     if grows {
@@ -99,7 +99,7 @@ pub fn learn(
             }
         }
         let enough = settled && learning.rtol > 0.0 && cost / learning.rtol.powi(2) < 2.0 * spent as f64;
-        if settled && (stale >= 2 || cost < GOOD_ENOUGH) || enough {
+        if settled && (stale >= 2 && rounds.len() >= 5 || cost < GOOD_ENOUGH) || enough {
             break;
         }
         if grows {
@@ -157,27 +157,32 @@ impl Pupil {
         // No progress: points will not tell more than they do.
         self.power = if power < 1.1 * self.power { 1.0 } else { power };
         let training = Training { blocks, power: self.power };
+        let mut alone = f64::INFINITY;
         for _ in 0..PASSES {
             self.alone = training.refined_alone(&self.alone, FLOOR);
+            alone = training.fit_weights(std::slice::from_ref(&self.alone), &[1.0]).1;
+            if alone < 1.1 {
+                break;
+            }
         }
-        let spread = 1.0 / efficiency - 1.0;
+        let single = CubeDensity::single(self.alone.clone());
+        // While the product itself is still moving, clusters would only help it out.
         let mixed = self.cube.components().len() > 1;
-        let helpless = spread > 0.3 && self.lessons > 2;
-        if !mixed && !helpless && self.power == 1.0 {
-            self.cube = CubeDensity::single(self.alone.clone());
+        let helpless = match self.power < 1.0 {
+            true => alone > 1.05,
+            false => alone > 1.3 && self.lessons > 2 && self.whole < 2,
+        };
+        if !mixed && !helpless {
+            self.cube = single;
             return drawn_for_all;
         }
         let afresh = !mixed || self.power < 1.0 || self.whole < 2;
         self.whole += u32::from(self.power == 1.0);
         let components = if afresh { self.clustered(&training) } else { training.refined(&self.cube, FLOOR) };
-        let start = vec![1.0; components.len()];
-        let (weights, mixture) = training.fit_weights(&components, &start);
-        let (_, alone) = training.fit_weights(std::slice::from_ref(&self.alone), &[1.0]);
-        self.cube = if alone - 1.0 < (1.0 + 0.3 * components.len() as f64) * (mixture - 1.0) + 0.02 {
-            CubeDensity::single(self.alone.clone())
-        } else {
-            mixture_with_reserve(components, weights)
-        };
+        let (weights, mixture) = training.fit_weights(&components, &vec![1.0; components.len()]);
+        let price = 1.0 + 0.3 * components.len() as f64;
+        let pays = alone - 1.0 > price * (mixture - 1.0) + 0.02;
+        self.cube = if pays { mixture_with_reserve(components, weights) } else { single };
         drawn_for_all
     }
 

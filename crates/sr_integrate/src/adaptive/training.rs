@@ -110,9 +110,15 @@ impl Training<'_> {
     ///
     /// Returns the weights and, for them, E[(f/p)²] / E[f/p]².
     pub fn fit_weights(&self, components: &[Component], start: &[f64]) -> (Vec<f64>, f64) {
-        let densities = self.densities(components);
-        let weights: Vec<f64> = self.weights();
-        let pdf: Vec<f64> = self.blocks.iter().flat_map(|block| block.pdf.iter().copied()).collect();
+        // So many blocks, from all replicates, are enough to tell.
+        let step = self.blocks.len().div_ceil(FITTED_BLOCKS);
+        let some: Vec<&Block> = self.blocks.iter().step_by(step.max(1)).collect();
+        let each = |component: &Component| some.iter().flat_map(|block| meet(component, block).pdf).collect();
+        let densities: Vec<Vec<f64>> = components.iter().map(each).collect();
+        let size = |block: &Block, i: usize| self.weight(block, i);
+        let weights: Vec<f64> =
+            some.iter().flat_map(|block| (0..block.len()).map(move |i| size(block, i))).collect();
+        let pdf: Vec<f64> = some.iter().flat_map(|block| block.pdf.iter().copied()).collect();
         let mean = weights.iter().sum::<f64>() / weights.len() as f64;
         let mut shares = start.to_vec();
         let mut second = f64::INFINITY;
@@ -136,13 +142,10 @@ impl Training<'_> {
         shares.iter_mut().for_each(|share| *share /= total);
         (shares, second / (mean * mean))
     }
-
-    /// Each component's density at all points.
-    fn densities(&self, components: &[Component]) -> Vec<Vec<f64>> {
-        let all = |component| self.blocks.iter().flat_map(|block| meet(component, block).pdf).collect();
-        components.iter().map(all).collect()
-    }
 }
+
+/// Weights are fitted to the points of about so many blocks.
+const FITTED_BLOCKS: usize = 6;
 
 /// Bins of an axis, at least: a constant needs no more than one, but what follows may.
 const MIN_BINS: usize = 16;
