@@ -94,16 +94,16 @@ def page(rows: list[list[str]], rate_rows: list[list[str]], bars: list[Bar], see
         "## Time to a relative error",
         "",
         *paragraph(
-            "Milliseconds; the same NumPy integrand, five dimensions. *Ratio*: ours over vegas's; below 1, we are "
-            "faster."
+            "Milliseconds; the same NumPy integrand, five dimensions. *Ratio*: ours over vegas's; below 1, we "
+            "are faster."
         ),
         *table(["integrand", "error", "ours", "vegas", "ratio"], rows),
         "",
         "## Evaluations a second",
         "",
         *paragraph(
-            "Millions: a native integrand (Numba) of ours on all cores, Sobol' points; vegas with the same in "
-            "NumPy."
+            "Millions: a native integrand (Numba) of ours on all cores, Sobol' points; vegas with the same "
+            "in NumPy."
         ),
         *table(["integrand", "ours", "vegas", "ratio"], rate_rows),
     ]
