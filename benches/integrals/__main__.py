@@ -94,8 +94,8 @@ def page(rows: list[list[str]], rate_rows: list[list[str]], bars: list[Bar], see
         "## Time to a relative error",
         "",
         *paragraph(
-            "Milliseconds; the same NumPy integrand, five dimensions. *Ratio*: ours over vegas's; below 1, we "
-            "are faster."
+            "Milliseconds; the same NumPy integrand, five dimensions. *Ratio*: ours over vegas's; below 1, "
+            "we are faster."
         ),
         *table(["integrand", "error", "ours", "vegas", "ratio"], rows),
         "",
