@@ -62,7 +62,7 @@ pub fn clusters(cloud: &Cloud, most: usize, key: u64) -> Vec<Cluster> {
     let parameters = |count: usize| count * (1 + cloud.dim + cloud.dim * (cloud.dim + 1) / 2);
     let known =
         |count: &usize| *count <= most && (*count == 1 || 2 * parameters(*count) < cloud.total() as usize);
-    for count in [1, 2, 3, 4, 6, 8, 12, 16, 24, 32].into_iter().take_while(known) {
+    for count in [1, 2, 3, 5, 8, 12, 18, 24].into_iter().take_while(known) {
         let (fit, found) = fit(cloud, count, &variances, derive_key(key, count as u32));
         let merit = fit - 0.5 * parameters(found.len()) as f64 * cloud.total().max(2.0).ln();
         if best.as_ref().is_none_or(|(known, _)| merit > *known) {
@@ -83,7 +83,7 @@ fn fit(cloud: &Cloud, count: usize, variances: &[f64], key: u64) -> (f64, Vec<Cl
     let mut shares = nearest(cloud, &seeds(cloud, count, variances, key), variances);
     let mut last = f64::NEG_INFINITY;
     let mut found = Vec::new();
-    for _ in 0..15 {
+    for _ in 0..10 {
         found = shares.iter().filter_map(|share| cluster(cloud, share, variances)).collect::<Vec<Cluster>>();
         let total: f64 = found.iter().map(|cluster| cluster.share).sum();
         found.iter_mut().for_each(|cluster| cluster.share /= total);

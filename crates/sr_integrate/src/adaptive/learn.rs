@@ -136,14 +136,16 @@ struct Pupil {
     /// The power of f that it follows.
     power: f64,
     lessons: u32,
-    /// Rounds since f is learned as it is.
+    /// Clusterings since f is learned as it is.
     whole: u32,
+    /// Did the last clusters not pay?
+    failed: bool,
 }
 
 impl Pupil {
     fn new(dim: usize, key: u64) -> Self {
         let alone = Component::uniform(dim);
-        Self { key, alone, cube: CubeDensity::uniform(dim), power: 0.0, lessons: 0, whole: 0 }
+        Self { key, alone, cube: CubeDensity::uniform(dim), power: 0.0, lessons: 0, whole: 0, failed: false }
     }
 
     /// Learns from a round. Returns whether its points were drawn for f as it is.
@@ -172,7 +174,9 @@ impl Pupil {
             true => alone > 1.05,
             false => alone > 1.3 && self.lessons > 2 && self.whole < 2,
         };
-        if !mixed && !helpless {
+        // They did not pay, and may not yet: a round is left out.
+        let unlikely = std::mem::take(&mut self.failed) && alone < 2.0;
+        if !mixed && (!helpless || unlikely) {
             self.cube = single;
             return drawn_for_all;
         }
@@ -182,6 +186,7 @@ impl Pupil {
         let (weights, mixture) = training.fit_weights(&components, &vec![1.0; components.len()]);
         let price = 1.0 + 0.3 * components.len() as f64;
         let pays = alone - 1.0 > price * (mixture - 1.0) + 0.02;
+        self.failed = !pays;
         self.cube = if pays { mixture_with_reserve(components, weights) } else { single };
         drawn_for_all
     }
@@ -253,7 +258,7 @@ fn resampled(training: &Training<'_>, dim: usize, key: u64) -> Cloud {
     let weights = training.weights();
     let (sum, squares) = weights.iter().fold((0.0, 0.0), |(s, q), w| (s + w, q + w * w));
     let effective = sum * sum / squares;
-    let count = (2.0 * effective).clamp(64.0, 768.0);
+    let count = (1.5 * effective).clamp(64.0, 512.0);
     let step = sum / count;
     let mut goal = step * (mix64(key) as f64 / u64::MAX as f64);
     let (mut points, mut copies) = (Vec::new(), Vec::new());
