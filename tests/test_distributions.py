@@ -69,7 +69,7 @@ def test_methods_agree_with_one_another(p):
 def test_samples_can_be_run_backwards(p):
     u = np.random.default_rng(2).random((1000, p.uniforms) if p.uniforms > 1 else 1000)
     value = p.sample(u).value
-    if isinstance(p, (sr.Mixture, sr.Alias)):
+    if name(p) in ("Mixture", "WeightedSum", "Alias"):
         with pytest.raises(TypeError, match="cannot be inverted"):
             p.invert(value)
         return

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from functools import cached_property
 from numbers import Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -130,20 +131,20 @@ class Distribution(ABC):
             raise ValueError('a distribution is an object with its name as "type"')
         return value
 
-    def __mul__(self, other: Distribution | float) -> Product | Mixture | WeightedSum:
+    def __mul__(self, other: Distribution | float) -> Product | WeightedSum:
         """``p * q`` is the product, of independent coordinates; ``p * 0.5`` a part of a mixture."""
         from steradian.distributions.composite import Product
 
         if isinstance(other, Distribution):
             return Product([self, other])
         if isinstance(other, Real):
-            return weighted_sum([(float(other), self)])
+            return WeightedSum([(float(other), self)])
         return NotImplemented
 
-    def __rmul__(self, weight: float) -> Mixture | WeightedSum:
+    def __rmul__(self, weight: float) -> WeightedSum:
         """``0.3 * p``: a part of a mixture, ``0.3 * p + 0.7 * q``."""
         if isinstance(weight, Real):
-            return weighted_sum([(float(weight), self)])
+            return WeightedSum([(float(weight), self)])
         return NotImplemented
 
     @property
@@ -255,28 +256,49 @@ class Compiled(Distribution):
         return _remake, (type(self), self._arguments)
 
 
-class WeightedSum:
-    """A mixture on its way: ``0.3 * p``, to which something must be added for the weights to sum to 1."""
+class WeightedSum(Compiled):
+    """``0.3 * p + 0.7 * q``: a mixture, as soon as the weights sum to 1.
+
+    Until then, as ``0.3 * p``, it is on its way, and whatever is asked of it is a ValueError that says so.
+    """
 
     def __init__(self, terms: Sequence[tuple[float, Distribution]]) -> None:
-        self._terms = list(terms)
+        self._arguments = {"terms": tuple(terms)}
+        self.dim = terms[0][1].dim
+        self.space = terms[0][1].space
+        if self._is_complete():
+            self.uniforms = self._mixture.uniforms
 
-    def __add__(self, other: WeightedSum) -> Mixture | WeightedSum:
+    @property
+    def _terms(self) -> tuple[tuple[float, Distribution], ...]:
+        terms: tuple[tuple[float, Distribution], ...] = self._arguments["terms"]
+        return terms
+
+    def _is_complete(self) -> bool:
+        return len(self._terms) > 1 and abs(sum(weight for weight, _ in self._terms) - 1) < 1e-9
+
+    @cached_property
+    def _mixture(self) -> Mixture:
+        from steradian.distributions.composite import Mixture
+
+        if not self._is_complete():
+            text = " + ".join(f"{weight} * {part!r}" for weight, part in self._terms)
+            total = sum(weight for weight, _ in self._terms)
+            raise ValueError(f"the weights of {text} sum to {total:g}, not to 1")
+        return Mixture([part for _, part in self._terms], [weight for weight, _ in self._terms])
+
+    @property
+    def _core(self) -> _internal.Density:
+        return self._mixture._core
+
+    def to_dict(self) -> dict[str, Any]:
+        """That of the mixture."""
+        return self._mixture.to_dict()
+
+    def __add__(self, other: WeightedSum) -> WeightedSum:
         if not isinstance(other, WeightedSum):
             return NotImplemented
-        return weighted_sum(self._terms + other._terms)
-
-    def __repr__(self) -> str:
-        return " + ".join(f"{weight} * {part!r}" for weight, part in self._terms)
-
-
-def weighted_sum(terms: Sequence[tuple[float, Distribution]]) -> Mixture | WeightedSum:
-    """A mixture if the weights sum to 1, and otherwise what may still become one."""
-    from steradian.distributions.composite import Mixture
-
-    if len(terms) > 1 and abs(sum(weight for weight, _ in terms) - 1) < 1e-9:
-        return Mixture([part for _, part in terms], [weight for weight, _ in terms])
-    return WeightedSum(terms)
+        return WeightedSum(self._terms + other._terms)
 
 
 def as_distribution(value: object, argument: str = "over") -> Distribution:
@@ -286,11 +308,10 @@ def as_distribution(value: object, argument: str = "over") -> Distribution:
     """
     from steradian.distributions.line import Uniform
 
+    if isinstance(value, WeightedSum):
+        return value._mixture
     if isinstance(value, Distribution):
         return value
-    if isinstance(value, WeightedSum):
-        total = sum(weight for weight, _ in value._terms)
-        raise ValueError(f"{argument} is {value!r}, whose weights sum to {total:g}, not to 1")
     try:
         box = np.asarray(value, float)
     except (TypeError, ValueError):
