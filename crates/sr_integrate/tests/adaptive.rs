@@ -83,7 +83,7 @@ fn intervals_cover() {
             (0..2000).into_par_iter().map(covers).reduce(|| [0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
         for count in covered {
             let share = f64::from(count) / 2000.0;
-            assert!((0.925..=0.972).contains(&share), "{name}: {share}");
+            assert!((0.93..=0.97).contains(&share), "{name}: {share}");
         }
     }
 }
