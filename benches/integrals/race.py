@@ -15,7 +15,9 @@ import vegas
 import steradian as sr
 from integrals.families import DIM, Case
 
-SMALLEST, LARGEST = 1 << 10, 1 << 23
+SMALLEST, LARGEST = 1 << 10, 1 << 24
+ENOUGH = 6.0
+"""A tool that takes so many times ours without having reached the last goal is not run any longer."""
 GOALS = (1e-3, 1e-4)
 
 
@@ -52,9 +54,9 @@ class Track:
     error: list[float] = field(default_factory=list)
     seconds: list[float] = field(default_factory=list)
 
-    def is_done(self) -> bool:
-        """Is the last goal reached?"""
-        return bool(self.error) and self.error[-1] < min(GOALS)
+    def is_done(self, longest: float) -> bool:
+        """Is the last goal reached, or has it taken too long?"""
+        return bool(self.error) and (self.error[-1] < min(GOALS) or self.seconds[-1] > longest)
 
     def time_to(self, goal: float) -> tuple[float, bool]:
         """Seconds to an error, by a line between logarithms, and was it reached? The longest if not."""
@@ -73,8 +75,12 @@ def race(case: Case, seeds: int) -> dict[str, Track]:
     """All tools, in turn at each budget and seed, until each is done."""
     tracks = {"ours": Track(ours), "warmed": Track(vegas_warmed), "plain": Track(vegas_plain)}
     n = SMALLEST
-    while n <= LARGEST and not all(track.is_done() for track in tracks.values()):
-        running = [track for track in tracks.values() if not track.is_done()]
+    while n <= LARGEST:
+        goal, known = tracks["ours"].time_to(min(GOALS)) if n > SMALLEST else (math.inf, False)
+        longest = ENOUGH * goal if known else math.inf
+        running = [track for track in tracks.values() if not track.is_done(longest)]
+        if not running:
+            break
         errors: dict[int, list[float]] = {id(track): [] for track in running}
         seconds: dict[int, list[float]] = {id(track): [] for track in running}
         for seed in range(seeds):
