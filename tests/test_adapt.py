@@ -132,3 +132,23 @@ def test_files_that_hold_no_distribution(tmp_path):
                 return np.ones_like(x)
 
         Own().save(tmp_path / "own.json")
+
+
+def test_edges_are_stratified(tmp_path):
+    def disk(x):
+        return ((x**2).sum(axis=1) < 1).astype(float)
+
+    found = sr.adapt(disk, over=[(0, 1)] * 2, n=1 << 18)
+    assert found.iterations[-1].strata > 10
+    assert float(found.estimate.stderr) < 1e-4
+    assert abs(float(found.estimate) - np.pi / 4) < 5 * float(found.estimate.stderr)
+    assert "strata" in repr(found.density)
+    found.density.save(tmp_path / "disk.json")
+    again = sr.Distribution.load(tmp_path / "disk.json")
+    x = np.array([[0.2, 0.3], [0.6, 0.8], [1.5, 0.0]])
+    assert np.array_equal(again.pdf(x), found.density.pdf(x))
+    assert again.pdf(x)[1] > 2 * again.pdf(x)[0] > again.pdf(x)[2] == 0
+    u = again.invert(x[:2])
+    assert np.allclose(again.sample(u).value, x[:2], atol=1e-12)
+    with pytest.raises(ValueError, match="strata"):
+        sr.Learned(sr.Uniform(), [([[0.0, 1.0]], [], [])], [64], [(1, 0.5), None, None])

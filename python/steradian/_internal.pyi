@@ -185,8 +185,10 @@ class Adapted:
     """An integral, the density that was learned for it, and whether what was seen on the way agrees."""
 
     integral: Integral
-    parts: tuple[list[tuple[list[list[float]], list[float], list[float]]], list[int]]
-    rounds: list[tuple[list[float], list[float], int, float, int]]
+    parts: tuple[
+        list[tuple[list[list[float]], list[float], list[float]]], list[int], list[tuple[int, float] | None]
+    ]
+    rounds: list[tuple[list[float], list[float], int, float, int, int]]
     chi2: float
     dof: int
     n: int
@@ -197,8 +199,9 @@ def adapt(over: Density, f: object, request: Mapping[str, Any]) -> Adapted:
 
 def learned(
     over: Density,
-    parts: Sequence[tuple[Sequence[Sequence[float]], Sequence[float], Sequence[float]]],
+    components: Sequence[tuple[Sequence[Sequence[float]], Sequence[float], Sequence[float]]],
     shares: Sequence[int],
+    strata: Sequence[tuple[int, float] | None],
 ) -> Density:
     """A density that was learned before."""
 

@@ -42,6 +42,7 @@ fn integrands() -> Vec<(&'static str, usize, F, f64)> {
         ("waves", 4, Box::new(|x| 1.0 + (6.0 * x.iter().sum::<f64>()).cos()), {
             1.0 + (3.0_f64.sin() / 3.0).powi(4) * 12.0_f64.cos()
         }),
+        ("edge", 2, Box::new(|x| f64::from(u8::from(radius(x) < 1.0))), 0.25 * std::f64::consts::PI),
         ("kinks", 4, Box::new(|x| x.iter().map(|x| (-5.0 * (x - 0.3).abs()).exp()).product()), {
             ((2.0 - (-1.5_f64).exp() - (-3.5_f64).exp()) / 5.0).powi(4)
         }),
@@ -107,6 +108,32 @@ fn peaks_are_learned() {
     assert!(double.density.cube().components().len() > 2, "{double:?}");
 }
 
+fn radius(x: &[f64]) -> f64 {
+    x.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// Edges that no product or mixture of them follows: strata put points where they are. Without them the errors are
+/// 9e-5 and 2.7e-4.
+#[test]
+fn edges_are_stratified() {
+    let pi = std::f64::consts::PI;
+    let cases: [(&str, usize, F, f64, f64); 2] = [
+        ("quarter disk", 2, Box::new(|x| f64::from(u8::from(radius(x) < 1.0))), 0.25 * pi, 6e-5),
+        ("ball", 3, Box::new(|x| f64::from(u8::from(radius(x) < 0.9))), 0.9_f64.powi(3) * pi / 6.0, 2e-4),
+    ];
+    for (name, dim, f, exact, error) in cases {
+        let found = run(&cube(dim), &f, &Plan { n: Some(1 << 19), seed: 3, ..Plan::default() });
+        let (mean, stderr) = (found.integral.mean[0], found.integral.stderr()[0]);
+        let strata = found.density.cube().strata();
+        assert!(strata.is_some_and(|strata| strata.count() > 10), "{name}: {strata:?}");
+        assert!(
+            (mean - exact).abs() < 5.0 * stderr && stderr < error * exact,
+            "{name}: {mean} ± {stderr}, not {exact}"
+        );
+        assert!(!found.disagrees(), "{name}: {found:?}");
+    }
+}
+
 /// Learned densities integrate to one, over the cube and over other bases, and tell what they sample.
 #[test]
 fn densities_are_densities() {
@@ -131,8 +158,7 @@ fn densities_are_densities() {
         // A turned component's corners lie outside, where nothing is drawn.
         let drawn = samples_are_told(density);
         assert!((whole.mean[0] - drawn).abs() < 5.0 * whole.stderr()[0] + 0.01, "{whole:?} of {density:?}");
-        let (parts, shares) = density.parts();
-        let again = Learned::from_parts(base.clone(), parts, shares).unwrap();
+        let again = Learned::from_parts(base.clone(), density.parts()).unwrap();
         assert_eq!(again.cube(), density.cube());
     }
 }

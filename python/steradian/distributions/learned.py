@@ -21,6 +21,9 @@ class Learned(Compiled):
     - ``components``: each (knots of each axis, origin, rotation); origin and rotation are empty along the
       coordinates
     - ``shares``: of each component, whole numbers that sum to 64
+    - ``strata``: how the mixture's own uniforms are drawn, if not evenly: a tree of cells, each before its lower
+      and that before its upper half, as (the axis that it is cut across, the probability of its lower half), or
+      None for a stratum, which is not cut
 
     Raises ValueError, naming what is wrong, if these are no such density.
 
@@ -30,14 +33,22 @@ class Learned(Compiled):
     True
     """
 
-    def __init__(self, over: Distribution, components: Sequence[Component], shares: Sequence[int]) -> None:
+    def __init__(
+        self,
+        over: Distribution,
+        components: Sequence[Component],
+        shares: Sequence[int],
+        strata: Sequence[tuple[int, float] | None] = (),
+    ) -> None:
         core = _internal.learned(
             over._core,
             [(list(knots), list(origin), list(rotation)) for knots, origin, rotation in components],
             list(shares),
+            [None if cell is None else (cell[0], cell[1]) for cell in strata],
         )
-        super().__init__(core, over=over, components=components, shares=shares)
+        super().__init__(core, over=over, components=components, shares=shares, strata=strata)
 
     def __repr__(self) -> str:
-        count = len(self._arguments["components"])
-        return f"<Learned over {self._arguments['over']!r}, {count} component{'s' * (count > 1)}>"
+        count, cells = len(self._arguments["components"]), len(self._arguments["strata"])
+        strata = f", {(cells + 1) // 2} strata" if cells else ""
+        return f"<Learned over {self._arguments['over']!r}, {count} component{'s' * (count > 1)}{strata}>"

@@ -36,6 +36,8 @@ class Iteration(NamedTuple):
     """As many equal points would do as well (Kish 1965)."""
     components: int
     """Of the density that drew its points."""
+    strata: int
+    """Of that density; 1 if it has none."""
 
 
 @dataclass(frozen=True)
@@ -94,8 +96,9 @@ def adapt(
     (3, 5)
 
     First it learns, from up to a quarter of the evaluations, a map of every coordinate, and, if there are
-    several peaks or one that lies askew, a mixture of maps with their own axes. Then it integrates with that
-    density, from new points, so that the error is as honest as for any fixed density. If the rounds of
+    several peaks or one that lies askew, a mixture of maps with their own axes. What neither can follow, like an
+    edge, it stratifies: more points where f / p still varies, if a round of learning shows that they pay. Then it
+    integrates with that density, from new points, so that the error is as honest as for any fixed density. If the rounds of
     learning contradict the result it warns: then the integrand has features that the points miss, and more
     are needed.
 
@@ -106,7 +109,7 @@ def adapt(
     Raises what :func:`integrate` raises. Warns with :class:`IntegrationWarning` if rounds disagree, or a
     single point decides.
 
-    Source: G. P. Lepage, J. Comput. Phys. 27 (1978) and 439 (2021), for the maps; O. Cappé et al., "Adaptive
+    Source: G. P. Lepage, J. Comput. Phys. 27 (1978) for the maps, 439 (2021) for the strata; O. Cappé et al., "Adaptive
     importance sampling in general mixture classes", Stat. Comput. 18 (2008), for mixtures.
     """
     base = as_distribution(over)
@@ -119,8 +122,8 @@ def adapt(
         estimate=to_estimate(result.integral),
         density=Learned(base, *result.parts),
         iterations=[
-            Iteration(_plain(mean), _plain(stderr), count, effective_n, components)
-            for mean, stderr, count, effective_n, components in result.rounds
+            Iteration(_plain(mean), _plain(stderr), count, effective_n, components, strata)
+            for mean, stderr, count, effective_n, components, strata in result.rounds
         ],
         chi2=result.chi2,
         dof=result.dof,

@@ -9,9 +9,14 @@ use statrs::function::beta::beta_reg;
 
 use super::learn::{Learning, learn};
 use super::learned::Learned;
+use super::level::Level;
 use super::round::{REPLICATES, Round};
-use crate::density::Density;
-use crate::integrate::{Integral, Integrand, IntegrateError, OnRound, Plan, Progress, Single, integrate};
+use crate::columns::{Columns, ColumnsMut};
+use crate::density::{Density, DensityError};
+use crate::integrate::{
+    Control, Integral, Integrand, IntegrateError, OnRound, Plan, Progress, Single, Technique, integrate,
+};
+use crate::space::Space;
 
 /// An integral, the density that was learned for it, and whether what was seen on the way agrees.
 #[derive(Clone, Debug)]
@@ -94,11 +99,35 @@ pub fn adapt(
             ..progress.clone()
         })
     };
-    let single = Single(density.clone());
-    let mut integral = integrate(&[(&single, 1)], integrand, &rest, pool, &mut tell)?;
+    let technique = Leveled { single: Single(density.clone()), level: lesson.level };
+    let mut integral = integrate(&[(&technique, 1)], integrand, &rest, pool, &mut tell)?;
     integral.seconds = began.elapsed().as_secs_f64();
     let Agreement { chi2, dof, q } = agreement(&lesson.rounds, &integral);
     Ok(Adapted { integral, density, rounds: lesson.rounds, chi2, dof, q })
+}
+
+/// A learned density, and what is taken off the terms of its points.
+struct Leveled {
+    single: Single,
+    level: Option<Level>,
+}
+
+impl Technique for Leveled {
+    fn space(&self) -> Space {
+        self.single.space()
+    }
+
+    fn uniforms(&self) -> usize {
+        self.single.uniforms()
+    }
+
+    fn draw(&self, u: Columns<'_>, x: ColumnsMut<'_>, factor: &mut [f64]) -> Result<(), DensityError> {
+        self.single.draw(u, x, factor)
+    }
+
+    fn control(&self) -> Option<&dyn Control> {
+        self.level.as_ref().map(|level| level as &dyn Control)
+    }
 }
 
 /// Do estimates of the same agree?

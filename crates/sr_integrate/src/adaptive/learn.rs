@@ -7,6 +7,9 @@
 //! As long as a few points outweigh all others, f is learned to a power below 1, which flattens it, so that every round
 //! moves as far as its points can tell (annealing, as in R. Neal, "Annealed importance sampling", Stat. Comput. 11,
 //! 2001). Narrow peaks are found from their slopes that way, and of several peaks the lower are not lost.
+//!
+//! What cannot be followed by either, an edge or a shell, is stratified in the end: [`stratify`](super::stratify) finds
+//! where f / p still varies, and a round tells whether points do better there.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -18,8 +21,10 @@ use super::axis::Axis;
 use super::cluster::{Cloud, Cluster, clusters};
 use super::component::{Component, Frame};
 use super::cube::{CubeDensity, PARTS};
+use super::level::Level;
 use super::matrix::eigenvectors;
-use super::round::{Round, round};
+use super::round::{Round, Seen, round};
+use super::stratify::Observed;
 use super::training::{Block, Training};
 use crate::density::Density;
 use crate::integrate::{Integrand, IntegrateError};
@@ -45,6 +50,8 @@ pub struct Learning {
 pub struct Lesson {
     /// Where to draw uniforms for the base density.
     pub cube: CubeDensity,
+    /// What to take off the terms, if the cube has strata.
+    pub level: Option<Level>,
     /// What the rounds estimated.
     pub rounds: Vec<Round>,
 }
@@ -72,47 +79,89 @@ pub fn learn(
     let dim = base.uniforms();
     let mut pupil = Pupil::new(dim, derive_key(learning.seed, 0x1ea2));
     let mut rounds: Vec<Round> = Vec::new();
-    let (mut spent, mut best, mut stale) = (0, None::<(f64, CubeDensity)>, 0);
+    let (mut spent, mut best, mut stale) = (0, None::<Best>, 0);
     let mut size = (learning.evaluations / 10).clamp(MIN_ROUND, 1 << 16);
     // Nobody knows how much is needed, or how long f takes: rounds begin small, and grow.
     let grows = learning.rtol > 0.0 || learning.until.is_some();
     if grows {
         size = size.min(2 * MIN_ROUND);
     }
+    // Strata for what has been learned, once it has.
+    let mut trial: Option<(CubeDensity, Level)> = None;
     let in_time = || learning.until.is_none_or(|until| Instant::now() < until);
     while rounds.is_empty() || spent + size <= learning.evaluations && in_time() {
         let seed = derive_key(learning.seed, rounds.len() as u32);
-        let (seen, scales, blocks) = round(base, &pupil.cube, integrand, (size, seed), pool)?;
+        let (drew, level) = match trial.clone() {
+            Some((cube, level)) => (cube, Some(level)),
+            None => (pupil.cube.clone(), None),
+        };
+        let Seen { round: seen, scales, blocks, observed } =
+            round(base, (&drew, level.as_ref()), integrand, (size, seed), pool)?;
         on_round(&seen)?;
         spent += seen.n;
         let cost = seen.cost(&scales);
-        let drew = pupil.cube.clone();
         let efficiency = seen.effective_n / seen.n as f64;
         rounds.push(seen);
-        let whole = pupil.learn(&blocks, efficiency);
-        let known = best.as_ref().map_or(f64::INFINITY, |(cost, _)| *cost);
+        let known = best.as_ref().map_or(f64::INFINITY, |best| best.cost);
+        let whole = trial.is_some() || pupil.learn(&blocks, efficiency);
         let settled = whole && efficiency > 0.0;
-        if settled || best.is_none() {
+        if let (Some(best), Some(_)) = (&mut best, &trial) {
+            stale = 2;
+            best.observed.extend(observed);
+            if !(cost < WORTH_STRATA * known) {
+                break;
+            }
+            (best.cost, best.cube, best.level) = (cost, drew, level);
+        } else if settled || best.is_none() {
             stale = if cost < 0.8 * known { 0 } else { stale + 1 };
             if cost < 1.3 * known || best.is_none() {
-                best = Some((cost.min(known), drew));
+                best = Some(Best { cost: cost.min(known), cube: drew, level: None, observed });
             }
         }
         let enough = settled && learning.rtol > 0.0 && cost / learning.rtol.powi(2) < 2.0 * spent as f64;
-        if settled && (stale >= 2 && rounds.len() >= 5 || cost < GOOD_ENOUGH) || enough {
+        if enough || settled && cost < GOOD_ENOUGH {
             break;
         }
         if grows {
             size += size / 2;
         }
+        let ends = spent + 2 * size > learning.evaluations;
+        if settled && (stale >= 2 && rounds.len() >= 5 || stale >= 1 && ends) {
+            trial = best.as_ref().and_then(Best::with_strata);
+            if trial.is_none() {
+                break;
+            }
+        }
     }
     // What the last round taught has not been tried; it was right to go on so far, unless rounds had become worse.
-    let cube = match best {
-        Some((_, cube)) if stale > 0 => cube,
-        _ => pupil.cube,
+    let (cube, level) = match best {
+        Some(best) if stale > 0 => (best.cube, best.level),
+        _ => (pupil.cube, None),
     };
-    Ok(Lesson { cube, rounds })
+    Ok(Lesson { cube, level, rounds })
 }
+
+/// The best density so far, and what its points saw.
+struct Best {
+    cost: f64,
+    cube: CubeDensity,
+    level: Option<Level>,
+    observed: Observed,
+}
+
+impl Best {
+    /// The same with new strata, if they promise to be worth it.
+    fn with_strata(&self) -> Option<(CubeDensity, Level)> {
+        let (level, left) = self.observed.stratified()?;
+        (left < WORTH_TRYING).then(|| (self.cube.with_strata(level.strata().clone()), level))
+    }
+}
+
+/// Strata are tried if they promise to leave at most this share of the variance …
+const WORTH_TRYING: f64 = 0.5;
+
+/// … and kept if a point costs at most this share of what it costs without them, or with those before.
+const WORTH_STRATA: f64 = 0.8;
 
 /// Rounds of fewer points teach little.
 const MIN_ROUND: u64 = 1024;

@@ -103,7 +103,7 @@ impl Inverse for Learned {
         let mut v = vec![0.0; n * self.uniforms()];
         self.base_inverse()?.invert(x, ColumnsMut::new(&mut v, n))?;
         let v = Columns::new(&v, n);
-        self.cube.components()[0].invert(v, u.reborrow(), &mut vec![0.0; n]);
+        self.cube.invert_only(v, u.reborrow());
         // What is not in the support of the base has no uniforms.
         for i in (0..n).filter(|&i| (0..v.dim()).any(|j| v.get(i, j).is_nan())) {
             (0..v.dim()).for_each(|j| u.set(i, j, f64::NAN));

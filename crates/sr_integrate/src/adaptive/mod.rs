@@ -6,6 +6,8 @@
 //! - [`Axis`]: a smooth map of one coordinate, refined as vegas refines its grids.
 //! - [`Component`]: a product of them, along the coordinates or turned axes.
 //! - [`CubeDensity`]: a mixture of components, sampled by one low-discrepancy point each.
+//! - [`Strata`]: how many points each part of the mixture's uniforms gets, where that helps: adaptive stratification.
+//! - [`Level`]: what f / p is about in each, taken off its points' terms.
 //! - [`learn`]: rounds of points, annealing, clusters, weights.
 //! - [`Learned`]: the result, a [`Density`](crate::Density).
 //! - [`adapt`]: learns, integrates, and says whether all rounds agree.
@@ -19,9 +21,12 @@ mod component;
 mod cube;
 mod learn;
 mod learned;
+mod level;
 mod matrix;
 mod parts;
 mod round;
+mod strata;
+mod stratify;
 mod training;
 
 pub use adapt::{Adapted, adapt};
@@ -30,5 +35,7 @@ pub use component::{Component, Frame};
 pub use cube::{CubeDensity, PARTS};
 pub use learn::{Learning, Lesson, learn};
 pub use learned::Learned;
-pub use parts::{Part, PartsError};
+pub use level::Level;
+pub use parts::{Part, Parts, PartsError};
 pub use round::Round;
+pub use strata::{Strata, Written};

@@ -8,6 +8,7 @@ use super::axis::Axis;
 use super::component::{Component, Frame};
 use super::cube::{CubeDensity, PARTS};
 use super::learned::Learned;
+use super::strata::{Strata, Written};
 use crate::density::Density;
 
 /// A component of a learned density as plain numbers.
@@ -19,6 +20,18 @@ pub struct Part {
     pub centre: Vec<f64>,
     /// Their directions: an orthonormal matrix, row after row; empty with `centre`.
     pub rotation: Vec<f64>,
+}
+
+/// A learned density as plain numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parts {
+    /// What it is a mixture of.
+    pub components: Vec<Part>,
+    /// The share of each component, in [`PARTS`].
+    pub shares: Vec<u32>,
+    /// The strata that the mixture's uniforms come from, cell before lower half before upper half: the axis that a cell
+    /// is cut across and the probability of its lower half, or nothing for a stratum. No cell: no strata.
+    pub strata: Vec<Written>,
 }
 
 /// Why numbers are no learned density.
@@ -55,6 +68,15 @@ pub enum PartsError {
         /// What is wrong.
         what: &'static str,
     },
+    /// Cells that are no tree.
+    #[error(
+        "the strata are no tree of cells: each must be cut across one of {dim} axes, with a probability between 0 \
+         and 1 for its lower half, and be followed by its halves"
+    )]
+    Strata {
+        /// How many axes there are.
+        dim: usize,
+    },
     /// A matrix that is no rotation.
     #[error("the axes of component {component} are not orthonormal, or too few numbers")]
     Frame {
@@ -64,36 +86,42 @@ pub enum PartsError {
 }
 
 impl Learned {
-    /// What it was learned as: components, and the share of each.
-    pub fn parts(&self) -> (Vec<Part>, Vec<u32>) {
+    /// What it was learned as.
+    pub fn parts(&self) -> Parts {
         let part = |component: &Component| Part {
             knots: component.axes().iter().map(|axis| axis.knots().to_vec()).collect(),
             centre: component.frame().map_or(Vec::new(), |frame| frame.centre.clone()),
             rotation: component.frame().map_or(Vec::new(), |frame| frame.rotation.clone()),
         };
-        (self.cube().components().iter().map(part).collect(), self.cube().shares().to_vec())
+        Parts {
+            components: self.cube().components().iter().map(part).collect(),
+            shares: self.cube().shares().to_vec(),
+            strata: self.cube().strata().map_or(Vec::new(), Strata::written),
+        }
     }
 
     /// The density that [`Learned::parts`] describes, over the same `base`.
     ///
     /// # Errors
     /// If they describe none: they may come from anywhere.
-    pub fn from_parts(
-        base: Arc<dyn Density>,
-        parts: Vec<Part>,
-        shares: Vec<u32>,
-    ) -> Result<Self, PartsError> {
-        if parts.is_empty() || parts.len() != shares.len() {
-            return Err(PartsError::Count { components: parts.len(), shares: shares.len() });
+    pub fn from_parts(base: Arc<dyn Density>, parts: Parts) -> Result<Self, PartsError> {
+        let Parts { components, shares, strata } = parts;
+        if components.is_empty() || components.len() != shares.len() {
+            return Err(PartsError::Count { components: components.len(), shares: shares.len() });
         }
         let sum: u64 = shares.iter().map(|&share| u64::from(share)).sum();
         if sum != u64::from(PARTS) || shares.contains(&0) {
             return Err(PartsError::Shares(sum));
         }
         let dim = base.uniforms();
-        let parts = parts.into_iter().enumerate();
-        let components = parts.map(|(i, part)| component(i, part, dim)).collect::<Result<Vec<_>, _>>()?;
-        Ok(Self::new(base, CubeDensity::from_shares(components, shares)))
+        let components = components.into_iter().enumerate();
+        let components =
+            components.map(|(i, part)| component(i, part, dim)).collect::<Result<Vec<_>, _>>()?;
+        let mut cube = CubeDensity::from_shares(components, shares);
+        if !strata.is_empty() {
+            cube = cube.with_strata(Strata::from_written(dim, &strata).ok_or(PartsError::Strata { dim })?);
+        }
+        Ok(Self::new(base, cube))
     }
 }
 

@@ -6,10 +6,13 @@ use rayon::ThreadPool;
 use rayon::prelude::*;
 
 use super::cube::CubeDensity;
+use super::level::Level;
+use super::strata::Strata;
+use super::stratify::Observed;
 use super::training::Block;
 use crate::columns::{Columns, ColumnsMut};
 use crate::density::{Density, DensityError};
-use crate::integrate::{Integrand, IntegrateError, values_of};
+use crate::integrate::{Control, Integrand, IntegrateError, values_of};
 use crate::points::{Points, Sequence};
 
 /// Rounds have so many replicates, from which their errors are known.
@@ -31,6 +34,8 @@ pub struct Round {
     pub effective_n: f64,
     /// The number of components of the density that drew the points.
     pub components: usize,
+    /// The number of its strata; 1 if it has none.
+    pub strata: usize,
 }
 
 impl Round {
@@ -43,12 +48,31 @@ impl Round {
     }
 }
 
+/// What a round saw.
+pub struct Seen {
+    /// What it estimated.
+    pub round: Round,
+    /// The mean size of each output.
+    pub scales: Vec<f64>,
+    /// Its points, and f there.
+    pub blocks: Vec<Block>,
+    /// The same in the cube of the mixture's uniforms.
+    pub observed: Observed,
+}
+
 /// Points of a block, also where the base density puts them.
 struct Drawn {
     replicate: usize,
     block: Block,
     x: Vec<f64>,
     base: Vec<f64>,
+    /// The mixture's uniforms of all points, those included that draw nothing.
+    u: Vec<f64>,
+    /// The strata of which they are drawn, and the density of these.
+    strata: Vec<u32>,
+    density: Vec<f64>,
+    /// Which of them are in the block.
+    kept: Vec<usize>,
 }
 
 fn draw(
@@ -60,29 +84,34 @@ fn draw(
     let (dim, out) = (cube.dim(), base.space().dim());
     let mut u = vec![0.0; dim * n];
     points.fill(replicate, first, ColumnsMut::new(&mut u, n));
+    let mut density = vec![1.0; n];
+    let drawn = cube.strata().map(|strata| strata.sample(ColumnsMut::new(&mut u, n), &mut density));
+    let strata = drawn.unwrap_or_default();
     let (mut v, mut pdf) = (vec![0.0; dim * n], vec![0.0; n]);
-    cube.sample(Columns::new(&u, n), ColumnsMut::new(&mut v, n), &mut pdf);
+    cube.mix(Columns::new(&u, n), &density, ColumnsMut::new(&mut v, n), &mut pdf);
     let (mut x, mut p) = (vec![0.0; out * n], vec![0.0; n]);
     base.sample(Columns::new(&v, n), ColumnsMut::new(&mut x, n), &mut p)?;
-    if (0..n).any(|i| !(pdf[i] > 0.0 && p[i] > 0.0)) {
-        let kept: Vec<usize> = (0..n).filter(|&i| pdf[i] > 0.0 && p[i] > 0.0).collect();
+    let kept: Vec<usize> = (0..n).filter(|&i| pdf[i] > 0.0 && p[i] > 0.0).collect();
+    if kept.len() < n {
         let keep = |numbers: &[f64]| -> Vec<f64> {
             numbers.chunks(n).flat_map(|column| kept.iter().map(|&i| column[i])).collect()
         };
         (v, pdf, x, p) = (keep(&v), keep(&pdf), keep(&x), keep(&p));
     }
-    Ok(Drawn { replicate: replicate as usize, block: Block { x: v, pdf, size: Vec::new() }, x, base: p })
+    let block = Block { x: v, pdf, size: Vec::new() };
+    Ok(Drawn { replicate: replicate as usize, block, x, base: p, u, strata, density, kept })
 }
 
-/// Draws about `n` points, evaluates f there, and tells what they say of the integral, with the mean size of each
-/// output. Where f is not finite it counts as 0.
+/// Draws about `n` points, evaluates f there, and tells what they say of the integral; `level` is taken off and added
+/// again. Where f is not finite it counts
+/// as 0.
 pub fn round(
     base: &Arc<dyn Density>,
-    cube: &CubeDensity,
+    (cube, level): (&CubeDensity, Option<&Level>),
     integrand: &mut Integrand<'_>,
     (n, seed): (u64, u64),
     pool: Option<&ThreadPool>,
-) -> Result<(Round, Vec<f64>, Vec<Block>), IntegrateError> {
+) -> Result<Seen, IntegrateError> {
     let each = n.div_ceil(u64::from(REPLICATES)).max(1);
     let points = Points::new(Sequence::Sobol, cube.dim(), seed);
     let blocks = each.div_ceil(BLOCK);
@@ -104,11 +133,13 @@ pub fn round(
     }
     let mut f = Vec::new();
     let outputs = if total > 0 { values_of(integrand, x, total, &mut f)? } else { 1 };
-    let (round, scales, blocks) = summed(drawn, &f, outputs, each);
-    Ok((Round { components: cube.components().len(), ..round }, scales, blocks))
+    let mut seen = summed(drawn, &f, outputs, each, level);
+    seen.round.components = cube.components().len();
+    seen.round.strata = cube.strata().map_or(1, Strata::count);
+    Ok(seen)
 }
 
-fn summed(drawn: Vec<Drawn>, f: &[f64], outputs: usize, each: u64) -> (Round, Vec<f64>, Vec<Block>) {
+fn summed(drawn: Vec<Drawn>, f: &[f64], outputs: usize, each: u64, level: Option<&Level>) -> Seen {
     let total: usize = drawn.iter().map(|drawn| drawn.base.len()).sum();
     let replicates = REPLICATES as usize;
     let n = each * u64::from(REPLICATES);
@@ -130,6 +161,14 @@ fn summed(drawn: Vec<Drawn>, f: &[f64], outputs: usize, each: u64) -> (Round, Ve
         }
     }
     sizes.iter_mut().for_each(|size| *size /= n as f64);
+    for (Drawn { replicate, strata, .. }, level) in drawn.iter().flat_map(|drawn| Some(drawn).zip(level)) {
+        let rows = strata.len();
+        let mut control = vec![0.0; rows * level.outputs()];
+        level.fill_drawn(strata, ColumnsMut::new(&mut control, rows));
+        for (a, control) in control.chunks(rows.max(1)).enumerate().take(outputs) {
+            sums[a * replicates + replicate] -= control.iter().sum::<f64>();
+        }
+    }
     let (mut mean, mut stderr) = (Vec::new(), Vec::new());
     for sums in sums.chunks(replicates) {
         let (count, each) = (replicates as f64, each as f64);
@@ -139,6 +178,7 @@ fn summed(drawn: Vec<Drawn>, f: &[f64], outputs: usize, each: u64) -> (Round, Ve
         stderr.push(spread.sqrt() / each);
     }
     let (mut absolute, mut squares) = (0.0, 0.0);
+    let observed = observed(&drawn, &terms, &sizes);
     let mut from = 0;
     let blocks = drawn.into_iter().map(|Drawn { mut block, .. }| {
         block.size = (0..block.pdf.len())
@@ -158,5 +198,41 @@ fn summed(drawn: Vec<Drawn>, f: &[f64], outputs: usize, each: u64) -> (Round, Ve
     });
     let blocks: Vec<Block> = blocks.collect();
     let effective_n = if squares > 0.0 { absolute * absolute / squares } else { 0.0 };
-    (Round { mean, stderr, n, effective_n, components: 0 }, sizes, blocks)
+    let round = Round { mean, stderr, n, effective_n, components: 1, strata: 1 };
+    Seen { round, scales: sizes, blocks, observed }
+}
+
+/// Of more outputs only the mean size is kept for strata.
+const OUTPUTS_FOR_STRATA: usize = 8;
+
+/// Points in the cube of the mixture's uniforms; `terms`: f / p of those that were kept, output after output.
+fn observed(drawn: &[Drawn], terms: &[f64], sizes: &[f64]) -> Observed {
+    let total: usize = drawn.iter().map(|drawn| drawn.kept.len()).sum();
+    let outputs = if sizes.len() <= OUTPUTS_FOR_STRATA { sizes.len() } else { 1 };
+    let size = |i: usize| {
+        let of =
+            (0..sizes.len()).filter(|&a| sizes[a] > 0.0).map(|a| (terms[a * total + i] / sizes[a]).abs());
+        of.sum::<f64>()
+    };
+    let mut all = Observed::default();
+    let mut from = 0;
+    for Drawn { u, density, kept, .. } in drawn {
+        let mut f = vec![vec![0.0; density.len()]; outputs];
+        for (a, column) in f.iter_mut().enumerate() {
+            for (i, &row) in kept.iter().enumerate() {
+                let term = if outputs == sizes.len() { terms[a * total + from + i] } else { size(from + i) };
+                column[row] = term * density[row];
+            }
+        }
+        from += kept.len();
+        let u = u.chunks(density.len().max(1)).map(<[f64]>::to_vec).collect();
+        let is_exact = outputs == sizes.len();
+        all.extend(Observed {
+            u,
+            f,
+            is_exact,
+            weight: density.iter().map(|density| 1.0 / density).collect(),
+        });
+    }
+    all
 }

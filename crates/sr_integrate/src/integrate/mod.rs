@@ -32,7 +32,7 @@ pub use probe::look_for_holes;
 pub use resampled::{MAX_CANDIDATES, Resampled, Target};
 pub(crate) use rounds::values_of;
 pub use rounds::{OnRound, Progress, integrate};
-pub use technique::{Combined, Single, Technique, TechniqueError};
+pub use technique::{Combined, Control, Single, Technique, TechniqueError};
 
 /// Why there is no integral.
 #[derive(Debug, Error)]

@@ -60,10 +60,25 @@ impl Task {
 }
 
 /// What a task drew: only points that count.
-struct Drawn {
-    x: Vec<f64>,
-    factor: Vec<f64>,
-    kept: Vec<usize>,
+#[derive(Default)]
+pub struct Drawn {
+    /// Columns.
+    pub x: Vec<f64>,
+    /// By what f is multiplied.
+    pub factor: Vec<f64>,
+    /// How many points of each replicate count.
+    pub kept: Vec<usize>,
+    /// Which rows they are of those that were asked for; empty if all are.
+    pub rows: Vec<usize>,
+    /// What is taken off the terms of the rows that were asked for: a column for each of the first outputs.
+    pub control: Vec<f64>,
+}
+
+impl Drawn {
+    /// The points.
+    pub fn points(&self) -> Columns<'_> {
+        Columns::new(&self.x, self.factor.len())
+    }
 }
 
 /// Integrates, with points from one or more techniques.
@@ -126,8 +141,7 @@ pub fn integrate(
             Integrand::Blocks(_) => {
                 let work = |scratch: &mut Scratch, task: &Task| {
                     draw(techniques, &points, task, scratch)?;
-                    let Scratch { x, factor, kept, .. } = scratch;
-                    Ok(Drawn { x: take(x), factor: take(factor), kept: take(kept) })
+                    Ok(take(&mut scratch.drawn))
                 };
                 let drawn = run(pool, &tasks, work);
                 let drawn = drawn.into_iter().collect::<Result<Vec<_>, IntegrateError>>()?;
@@ -217,14 +231,11 @@ fn run<R: Send>(
 #[derive(Default)]
 struct Scratch {
     u: Vec<f64>,
-    x: Vec<f64>,
-    factor: Vec<f64>,
-    /// How many points of each replicate count.
-    kept: Vec<usize>,
+    drawn: Drawn,
     f: Vec<f64>,
 }
 
-/// Draws a task's points into `scratch.x` and `scratch.factor`: only those that count.
+/// Draws a task's points into `scratch.drawn`.
 fn draw(
     techniques: &[(&dyn Technique, u32)],
     points: &[Points],
@@ -232,7 +243,7 @@ fn draw(
     scratch: &mut Scratch,
 ) -> Result<(), IntegrateError> {
     let (technique, n) = (techniques[task.technique].0, task.rows());
-    let Scratch { u, x, factor, kept, .. } = scratch;
+    let Scratch { u, drawn: Drawn { x, factor, kept, rows, control }, .. } = scratch;
     u.resize(technique.uniforms() * n, 0.0);
     x.resize(technique.space().dim() * n, 0.0);
     factor.resize(n, 0.0);
@@ -242,11 +253,18 @@ fn draw(
         }
     }
     technique.draw(Columns::new(u, n), ColumnsMut::new(x, n), factor)?;
+    if let Some(variate) = technique.control() {
+        control.resize(variate.outputs() * n, 0.0);
+        variate.fill(Columns::new(u, n), ColumnsMut::new(control, n));
+    } else {
+        control.clear();
+    }
     kept.clear();
     kept.extend(factor.chunks(task.len).map(count_positive));
+    rows.clear();
     if kept.iter().any(|&kept| kept < task.len) {
-        let keep = |i: usize| factor[i] > 0.0;
-        *x = x.chunks(n).flat_map(|column| (0..n).filter(|&i| keep(i)).map(|i| column[i])).collect();
+        rows.extend((0..n).filter(|&i| factor[i] > 0.0));
+        *x = x.chunks(n).flat_map(|column| rows.iter().map(|&i| column[i])).collect();
         factor.retain(|&factor| factor > 0.0);
     }
     Ok(())
@@ -262,11 +280,10 @@ fn reduce(
     keep_moments: bool,
 ) -> Result<Tally, IntegrateError> {
     draw(techniques, points, task, scratch)?;
-    let Scratch { x, factor, kept, f: values, .. } = scratch;
-    let x = Columns::new(x, factor.len());
-    values.resize(factor.len(), 0.0);
-    f.eval(x, values);
-    Ok(Tally::new(x, values, factor, [1, task.len], kept, keep_moments))
+    let Scratch { drawn, f: values, .. } = scratch;
+    values.resize(drawn.factor.len(), 0.0);
+    f.eval(drawn.points(), values);
+    Ok(Tally::new(drawn, values, [1, task.len], keep_moments))
 }
 
 /// Evaluates f at all points of a round in one block, and adds the terms of each task.
@@ -293,9 +310,7 @@ fn add_block(
         let len = drawn.factor.len();
         part.clear();
         (0..outputs).for_each(|a| part.extend_from_slice(&f[a * n + from..a * n + from + len]));
-        let x = Columns::new(&drawn.x, len);
-        let shape = [outputs, task.len];
-        let tally = Tally::new(x, &part, &drawn.factor, shape, &drawn.kept, sums.keeps_moments());
+        let tally = Tally::new(drawn, &part, [outputs, task.len], sums.keeps_moments());
         sums.add(task.technique, &task.replicates, tally)?;
         from += len;
     }

@@ -7,7 +7,7 @@ use super::integral::Integral;
 use super::lanes::{Summary, multiply};
 use super::moments::Moments;
 use super::plan::Plan;
-use crate::columns::Columns;
+use super::rounds::Drawn;
 
 /// A task's terms f · factor, added up, and what is odd about them.
 pub struct Tally {
@@ -33,22 +33,13 @@ struct Odd {
 }
 
 impl Tally {
-    /// - `f`: the values of each output, one after the other, at the points `x`
-    /// - `factor`: by what they are multiplied
+    /// - `f`: the values of each output, one after the other, at the points that were drawn
     /// - `[outputs, len]`: the number of outputs; how many points each replicate was to have. Those missing count as 0
-    /// - `kept`: how many each replicate has
-    pub fn new(
-        x: Columns<'_>,
-        f: &[f64],
-        factor: &[f64],
-        [outputs, len]: [usize; 2],
-        kept: &[usize],
-        keep_moments: bool,
-    ) -> Self {
-        let (n, asked) = (factor.len(), len * kept.len());
+    pub fn new(drawn: &Drawn, f: &[f64], [outputs, len]: [usize; 2], keep_moments: bool) -> Self {
+        let (n, asked) = (drawn.factor.len(), len * drawn.kept.len());
         let mut terms = vec![0.0; f.len()];
         for (terms, f) in terms.chunks_mut(n.max(1)).zip(f.chunks(n.max(1))) {
-            multiply(f, factor, terms);
+            multiply(f, &drawn.factor, terms);
         }
         let mut tally = Self {
             outputs,
@@ -61,25 +52,36 @@ impl Tally {
             first: None,
         };
         if !(tally.summary.sum.is_finite() && Summary::of(&terms[n..]).sum.is_finite()) {
-            tally.remove_odd(x, f, factor, &mut terms);
+            tally.remove_odd(drawn, f, &mut terms);
             tally.summary = Summary::of(&terms[..n]);
         }
+        let controls = drawn.control.chunks(asked.max(1)).take(outputs);
         if !keep_moments {
             let mut from = 0;
-            for &kept in kept {
+            for &kept in &drawn.kept {
                 let column = |a: usize| &terms[a * n + from..a * n + from + kept];
                 let whole = kept == n && outputs == 1;
                 let sum = |a: usize| if whole { tally.summary.sum } else { Summary::of(column(a)).sum };
                 tally.sums.extend((0..outputs).map(sum));
                 from += kept;
             }
-        } else if n == asked {
+            for (a, control) in controls.enumerate() {
+                for (replicate, control) in control.chunks(len).enumerate() {
+                    tally.sums[replicate * outputs + a] -= Summary::of(control).sum;
+                }
+            }
+        } else if n == asked && drawn.control.is_empty() {
             tally.moments = Moments::of_columns(&terms, n);
         } else {
-            let mut padded = Vec::with_capacity(asked * outputs.max(1));
-            for a in 0..outputs.max(1) {
-                padded.extend_from_slice(terms.get(a * n..(a + 1) * n).unwrap_or_default());
-                padded.resize((a + 1) * asked, 0.0);
+            let mut padded = vec![0.0; asked * outputs.max(1)];
+            for (padded, terms) in padded.chunks_mut(asked.max(1)).zip(terms.chunks(n.max(1))) {
+                if drawn.rows.is_empty() {
+                    padded[..n].copy_from_slice(terms);
+                }
+                drawn.rows.iter().zip(terms).for_each(|(&row, term)| padded[row] = *term);
+            }
+            for (padded, control) in padded.chunks_mut(asked.max(1)).zip(controls) {
+                padded.iter_mut().zip(control).for_each(|(term, control)| *term -= control);
             }
             tally.moments = Moments::of_columns(&padded, asked);
         }
@@ -87,12 +89,17 @@ impl Tally {
     }
 
     /// Counts points with terms that are not finite, and makes these 0.
-    fn remove_odd(&mut self, x: Columns<'_>, f: &[f64], factor: &[f64], terms: &mut [f64]) {
+    fn remove_odd(&mut self, drawn: &Drawn, f: &[f64], terms: &mut [f64]) {
+        let Drawn { factor, .. } = drawn;
         let n = factor.len();
         for i in 0..n {
             let Some(a) = (0..self.outputs).find(|a| !terms[a * n + i].is_finite()) else { continue };
             self.nans += 1;
-            self.first.get_or_insert_with(|| Odd { x: x.point(i), value: f[a * n + i], factor: factor[i] });
+            self.first.get_or_insert_with(|| Odd {
+                x: drawn.points().point(i),
+                value: f[a * n + i],
+                factor: factor[i],
+            });
             (0..self.outputs).for_each(|a| terms[a * n + i] = 0.0);
         }
     }

@@ -24,6 +24,20 @@ pub trait Technique: Sync {
     /// # Errors
     /// Those of the densities.
     fn draw(&self, u: Columns<'_>, x: ColumnsMut<'_>, factor: &mut [f64]) -> Result<(), DensityError>;
+
+    /// What is taken off the points' terms, if anything is.
+    fn control(&self) -> Option<&dyn Control> {
+        None
+    }
+}
+
+/// A control variate: numbers that resemble the terms f(x) · factor of a technique, less their known mean.
+pub trait Control: Sync {
+    /// How many outputs it resembles: the first so many.
+    fn outputs(&self) -> usize;
+
+    /// Writes, for each row of uniforms, a number for each output, a column each. Over the unit cube their means are 0.
+    fn fill(&self, u: Columns<'_>, control: ColumnsMut<'_>);
 }
 
 /// One density: the factor is 1 / p(x).
