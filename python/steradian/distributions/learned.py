@@ -21,9 +21,9 @@ class Learned(Compiled):
     - ``components``: each (knots of each axis, origin, rotation); origin and rotation are empty along the
       coordinates
     - ``shares``: of each component, whole numbers that sum to 64
-    - ``strata``: how the mixture's own uniforms are drawn, if not evenly: a tree of cells, each before its lower
-      and that before its upper half, as (the axis that it is cut across, the probability of its lower half), or
-      None for a stratum, which is not cut
+    - ``strata``: how the mixture's own uniforms are drawn, if not evenly: a tree of cells, each before its
+      lower and that before its upper half, as (the axis that it is cut across, the probability of its lower
+      half), or None for a stratum, which is not cut
 
     Raises ValueError, naming what is wrong, if these are no such density.
 

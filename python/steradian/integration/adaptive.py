@@ -96,11 +96,11 @@ def adapt(
     (3, 5)
 
     First it learns, from up to a quarter of the evaluations, a map of every coordinate, and, if there are
-    several peaks or one that lies askew, a mixture of maps with their own axes. What neither can follow, like an
-    edge, it stratifies: more points where f / p still varies, if a round of learning shows that they pay. Then it
-    integrates with that density, from new points, so that the error is as honest as for any fixed density. If the rounds of
-    learning contradict the result it warns: then the integrand has features that the points miss, and more
-    are needed.
+    several peaks or one that lies askew, a mixture of maps with their own axes. What neither can follow, like
+    an edge, it stratifies: more points where f / p still varies, if a round of learning shows that they pay.
+    Then it integrates with that density, from new points, so that the error is as honest as for any fixed
+    density. If the rounds of learning contradict the result it warns: then the integrand has features that
+    the points miss, and more are needed.
 
     - ``f``, limits, ``seed``, ``nan``, …: as in :func:`integrate`; ``n`` counts all evaluations (2¹⁷ if there
       is no limit). If ``f`` returns several values a point, the density follows all of them.
@@ -109,8 +109,8 @@ def adapt(
     Raises what :func:`integrate` raises. Warns with :class:`IntegrationWarning` if rounds disagree, or a
     single point decides.
 
-    Source: G. P. Lepage, J. Comput. Phys. 27 (1978) for the maps, 439 (2021) for the strata; O. Cappé et al., "Adaptive
-    importance sampling in general mixture classes", Stat. Comput. 18 (2008), for mixtures.
+    Source: G. P. Lepage, J. Comput. Phys. 27 (1978) for the maps, 439 (2021) for the strata; O. Cappé et al.,
+    "Adaptive importance sampling in general mixture classes", Stat. Comput. 18 (2008), for mixtures.
     """
     base = as_distribution(over)
     if n is None and not rtol and not atol and seconds is None:
