@@ -3,142 +3,115 @@
 use glam::{Vec2, Vec3};
 
 use crate::{
-    Bsdf, BsdfSample, Conductor, Dielectric, Diffuse, Lobes, Mask, MicrofacetShape, Plastic, Rgb,
-    RoughConductor, RoughDielectric, RoughPlastic, ThinDielectric,
+    Blend, Bsdf, BsdfSample, CoatedConductor, CompensatedConductor, CompensatedDielectric, Conductor,
+    Dielectric, Diffuse, DiffuseTransmission, Eon, Lobes, Mask, MicrofacetShape, OrenNayar, Plastic,
+    Principled, PrincipledThin, Rgb, RoughConductor, RoughDielectric, RoughPlastic, ThinDielectric,
 };
 
-/// Any model that fills its surface.
-#[derive(Clone, Copy, Debug)]
-pub enum AnyModel<'a> {
+/// Declares an enum of models, and hands its questions on to them. Those marked `from` also convert into it.
+macro_rules! any {
+    (
+        $(#[$enum_doc:meta])* $any:ident;
+        $($(#[$doc:meta])* $name:ident($model:ty) $(, $from:ident)?;)*
+    ) => {
+        $(#[$enum_doc])*
+        #[derive(Clone, Copy, Debug)]
+        pub enum $any<'a> {
+            $($(#[$doc])* $name($model),)*
+        }
+
+        impl Bsdf for $any<'_> {
+            #[inline]
+            fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
+                match self { $($any::$name(model) => model.eval(wo, wi),)* }
+            }
+            #[inline]
+            fn sample(&self, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
+                match self { $($any::$name(model) => model.sample(wo, u_lobe, u),)* }
+            }
+            #[inline]
+            fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
+                match self { $($any::$name(model) => model.pdf(wo, wi),)* }
+            }
+            #[inline]
+            fn lobes(&self) -> Lobes {
+                match self { $($any::$name(model) => model.lobes(),)* }
+            }
+            #[inline]
+            fn albedo(&self) -> Rgb {
+                match self { $($any::$name(model) => model.albedo(),)* }
+            }
+        }
+
+        $($(
+            any!(@$from $any, $name, $model);
+        )?)*
+    };
+    (@from $any:ident, $name:ident, $model:ty) => {
+        impl<'a> From<$model> for $any<'a> {
+            #[inline]
+            fn from(model: $model) -> Self {
+                $any::$name(model)
+            }
+        }
+    };
+}
+
+any! {
+    /// Any model that fills its surface.
+    AnyModel;
     /// Lambertian reflection.
-    Diffuse(Diffuse),
+    Diffuse(Diffuse), from;
     /// A smooth interface.
-    Dielectric(Dielectric),
+    Dielectric(Dielectric), from;
     /// A thin plate.
-    ThinDielectric(ThinDielectric),
+    ThinDielectric(ThinDielectric), from;
     /// A rough interface.
-    RoughDielectric(RoughDielectric),
+    RoughDielectric(RoughDielectric);
     /// A smooth metal.
-    Conductor(Conductor),
+    Conductor(Conductor), from;
     /// A rough metal.
-    RoughConductor(RoughConductor),
+    RoughConductor(RoughConductor);
     /// A smooth coating over a diffuse base.
-    Plastic(Plastic),
+    Plastic(Plastic), from;
     /// A rough coating over a diffuse base.
-    RoughPlastic(RoughPlastic<'a>),
+    RoughPlastic(RoughPlastic<'a>);
+    /// Rough diffuse reflection that preserves energy.
+    Eon(Eon), from;
+    /// Rough diffuse reflection.
+    OrenNayar(OrenNayar), from;
+    /// Diffuse reflection and transmission.
+    DiffuseTransmission(DiffuseTransmission), from;
+    /// A rough metal that loses nothing.
+    CompensatedConductor(CompensatedConductor<'a>), from;
+    /// A rough interface that loses nothing.
+    CompensatedDielectric(CompensatedDielectric<'a>), from;
+    /// A metal under a coating.
+    CoatedConductor(CoatedConductor<'a>), from;
+    /// Metals, plastics, cloth, rough glass.
+    Principled(Principled), from;
+    /// Leaves, paper, frosted panes.
+    PrincipledThin(PrincipledThin), from;
 }
 
-/// Any model, with or without holes. `'a` is the lifetime of the material's tables.
-#[derive(Clone, Copy, Debug)]
-pub enum AnyBsdf<'a> {
+any! {
+    /// Any model, with or without holes, or several in one place. `'a` is the lifetime of the material's tables.
+    #[expect(clippy::large_enum_variant, reason = "a box would be an allocation at every hit of a blend")]
+    AnyBsdf;
     /// The model fills its surface.
-    Solid(AnyModel<'a>),
+    Solid(AnyModel<'a>);
     /// Light also passes straight through.
-    Masked(Mask<AnyModel<'a>>),
+    Masked(Mask<AnyModel<'a>>);
+    /// Several models, or one in a frame of its own.
+    Blended(Blend<'a>);
 }
 
-impl Bsdf for AnyModel<'_> {
-    #[inline]
-    fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
+impl AnyBsdf<'_> {
+    /// The normal with its bumps, in the surface's frame; of several, their mean.
+    pub fn normal(&self) -> Vec3 {
         match self {
-            AnyModel::Diffuse(model) => model.eval(wo, wi),
-            AnyModel::Dielectric(model) => model.eval(wo, wi),
-            AnyModel::ThinDielectric(model) => model.eval(wo, wi),
-            AnyModel::RoughDielectric(model) => model.eval(wo, wi),
-            AnyModel::Conductor(model) => model.eval(wo, wi),
-            AnyModel::RoughConductor(model) => model.eval(wo, wi),
-            AnyModel::Plastic(model) => model.eval(wo, wi),
-            AnyModel::RoughPlastic(model) => model.eval(wo, wi),
-        }
-    }
-    #[inline]
-    fn sample(&self, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
-        match self {
-            AnyModel::Diffuse(model) => model.sample(wo, u_lobe, u),
-            AnyModel::Dielectric(model) => model.sample(wo, u_lobe, u),
-            AnyModel::ThinDielectric(model) => model.sample(wo, u_lobe, u),
-            AnyModel::RoughDielectric(model) => model.sample(wo, u_lobe, u),
-            AnyModel::Conductor(model) => model.sample(wo, u_lobe, u),
-            AnyModel::RoughConductor(model) => model.sample(wo, u_lobe, u),
-            AnyModel::Plastic(model) => model.sample(wo, u_lobe, u),
-            AnyModel::RoughPlastic(model) => model.sample(wo, u_lobe, u),
-        }
-    }
-    #[inline]
-    fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        match self {
-            AnyModel::Diffuse(model) => model.pdf(wo, wi),
-            AnyModel::Dielectric(model) => model.pdf(wo, wi),
-            AnyModel::ThinDielectric(model) => model.pdf(wo, wi),
-            AnyModel::RoughDielectric(model) => model.pdf(wo, wi),
-            AnyModel::Conductor(model) => model.pdf(wo, wi),
-            AnyModel::RoughConductor(model) => model.pdf(wo, wi),
-            AnyModel::Plastic(model) => model.pdf(wo, wi),
-            AnyModel::RoughPlastic(model) => model.pdf(wo, wi),
-        }
-    }
-    #[inline]
-    fn lobes(&self) -> Lobes {
-        match self {
-            AnyModel::Diffuse(model) => model.lobes(),
-            AnyModel::Dielectric(model) => model.lobes(),
-            AnyModel::ThinDielectric(model) => model.lobes(),
-            AnyModel::RoughDielectric(model) => model.lobes(),
-            AnyModel::Conductor(model) => model.lobes(),
-            AnyModel::RoughConductor(model) => model.lobes(),
-            AnyModel::Plastic(model) => model.lobes(),
-            AnyModel::RoughPlastic(model) => model.lobes(),
-        }
-    }
-    #[inline]
-    fn albedo(&self) -> Rgb {
-        match self {
-            AnyModel::Diffuse(model) => model.albedo(),
-            AnyModel::Dielectric(model) => model.albedo(),
-            AnyModel::ThinDielectric(model) => model.albedo(),
-            AnyModel::RoughDielectric(model) => model.albedo(),
-            AnyModel::Conductor(model) => model.albedo(),
-            AnyModel::RoughConductor(model) => model.albedo(),
-            AnyModel::Plastic(model) => model.albedo(),
-            AnyModel::RoughPlastic(model) => model.albedo(),
-        }
-    }
-}
-
-impl Bsdf for AnyBsdf<'_> {
-    #[inline]
-    fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
-        match self {
-            AnyBsdf::Solid(model) => model.eval(wo, wi),
-            AnyBsdf::Masked(mask) => mask.eval(wo, wi),
-        }
-    }
-    #[inline]
-    fn sample(&self, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
-        match self {
-            AnyBsdf::Solid(model) => model.sample(wo, u_lobe, u),
-            AnyBsdf::Masked(mask) => mask.sample(wo, u_lobe, u),
-        }
-    }
-    #[inline]
-    fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        match self {
-            AnyBsdf::Solid(model) => model.pdf(wo, wi),
-            AnyBsdf::Masked(mask) => mask.pdf(wo, wi),
-        }
-    }
-    #[inline]
-    fn lobes(&self) -> Lobes {
-        match self {
-            AnyBsdf::Solid(model) => model.lobes(),
-            AnyBsdf::Masked(mask) => mask.lobes(),
-        }
-    }
-    #[inline]
-    fn albedo(&self) -> Rgb {
-        match self {
-            AnyBsdf::Solid(model) => model.albedo(),
-            AnyBsdf::Masked(mask) => mask.albedo(),
+            AnyBsdf::Blended(blend) => blend.normal(),
+            _ => Vec3::Z,
         }
     }
 }
@@ -151,27 +124,6 @@ impl<'a, M: Into<AnyModel<'a>>> From<M> for AnyBsdf<'a> {
     }
 }
 
-impl From<Diffuse> for AnyModel<'_> {
-    #[inline]
-    fn from(model: Diffuse) -> Self {
-        AnyModel::Diffuse(model)
-    }
-}
-
-impl From<Dielectric> for AnyModel<'_> {
-    #[inline]
-    fn from(model: Dielectric) -> Self {
-        AnyModel::Dielectric(model)
-    }
-}
-
-impl From<ThinDielectric> for AnyModel<'_> {
-    #[inline]
-    fn from(model: ThinDielectric) -> Self {
-        AnyModel::ThinDielectric(model)
-    }
-}
-
 impl<S: MicrofacetShape> From<RoughDielectric<S>> for AnyModel<'_> {
     #[inline]
     fn from(model: RoughDielectric<S>) -> Self {
@@ -179,24 +131,10 @@ impl<S: MicrofacetShape> From<RoughDielectric<S>> for AnyModel<'_> {
     }
 }
 
-impl From<Conductor> for AnyModel<'_> {
-    #[inline]
-    fn from(model: Conductor) -> Self {
-        AnyModel::Conductor(model)
-    }
-}
-
 impl<S: MicrofacetShape> From<RoughConductor<S>> for AnyModel<'_> {
     #[inline]
     fn from(model: RoughConductor<S>) -> Self {
         AnyModel::RoughConductor(model.of_any_shape())
-    }
-}
-
-impl From<Plastic> for AnyModel<'_> {
-    #[inline]
-    fn from(model: Plastic) -> Self {
-        AnyModel::Plastic(model)
     }
 }
 

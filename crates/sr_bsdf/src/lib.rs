@@ -8,40 +8,63 @@
 //! are black from below: who wants both sides flips the frame. No model divides two numbers that both
 //! vanish at grazing angles; see [`microfacet`](Microfacet) for how.
 
+mod albedo_table;
 mod any;
 mod beckmann;
+mod blend;
+mod coated_conductor;
+mod compensated_conductor;
+mod compensated_dielectric;
 mod conductor;
 mod dielectric;
 mod diffuse;
+mod diffuse_transmission;
+mod disney;
 mod elementary;
+mod eon;
 mod erf;
 mod ggx;
 pub mod interface;
 mod mask;
 mod microfacet;
+mod oren_nayar;
 mod plastic;
+mod principled;
+mod principled_thin;
 mod rough_coat;
 mod rough_conductor;
 mod rough_dielectric;
 mod rough_plastic;
 mod shape;
 mod thin_dielectric;
+mod tilt;
 
+pub use albedo_table::AlbedoTable;
 pub use any::{AnyBsdf, AnyModel};
 pub use beckmann::Beckmann;
+pub use blend::{Blend, MAX_PARTS, MAX_STEPS, Part};
+pub use coated_conductor::{CoatedConductor, CoatedConductorTables};
+pub use compensated_conductor::CompensatedConductor;
+pub use compensated_dielectric::{CompensatedDielectric, DielectricTables};
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;
+pub use diffuse_transmission::DiffuseTransmission;
+pub use eon::Eon;
 pub use ggx::Ggx;
 pub use mask::Mask;
 pub use microfacet::Microfacet;
+pub use oren_nayar::OrenNayar;
 pub use plastic::{Plastic, SmoothCoat};
+pub use principled::{Principled, PrincipledInputs};
+pub use principled_thin::{PrincipledThin, PrincipledThinInputs};
 pub use rough_coat::RoughPlasticTables;
 pub use rough_conductor::RoughConductor;
 pub use rough_dielectric::RoughDielectric;
 pub use rough_plastic::RoughPlastic;
 pub use shape::{MicrofacetKind, MicrofacetShape};
 pub use thin_dielectric::ThinDielectric;
+pub use tilt::{Step, Tilt};
 
 use glam::{Vec2, Vec3};
 use sr_sampling::{Distribution, Sample, SolidAngle};

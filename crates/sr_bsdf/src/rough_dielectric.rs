@@ -26,13 +26,14 @@ impl<S: MicrofacetShape> RoughDielectric<S> {
     /// - `reflectance`, `transmittance`: scale what Fresnel's equations give; physically 1
     #[inline(always)]
     pub fn new(distribution: Microfacet<S>, eta: f32, reflectance: Rgb, transmittance: Rgb) -> Self {
+        Self { distribution, eta: Self::apart(eta), reflectance, transmittance }
+    }
+
+    /// The index, moved away from 1 if it is nearer than 10⁻⁴.
+    #[inline(always)]
+    pub(crate) fn apart(eta: f32) -> f32 {
         let contrast = eta - 1.0;
-        let eta = if contrast.abs() < Self::MIN_CONTRAST {
-            1.0 + Self::MIN_CONTRAST.copysign(contrast)
-        } else {
-            eta
-        };
-        Self { distribution, eta, reflectance, transmittance }
+        if contrast.abs() < Self::MIN_CONTRAST { 1.0 + Self::MIN_CONTRAST.copysign(contrast) } else { eta }
     }
 
     /// The same model, its shape known at run time.
@@ -50,16 +51,16 @@ impl<S: MicrofacetShape> RoughDielectric<S> {
 }
 
 /// The facet that refracts between two directions.
-struct RefractingFacet {
-    m: Vec3,
+pub(crate) struct RefractingFacet {
+    pub m: Vec3,
     /// (1 − F) |wi · m| / (wo · m + η wi · m)²
-    factor: f32,
-    cos_o: f32,
+    pub factor: f32,
+    pub cos_o: f32,
 }
 
 /// `None` if no facet refracts between `wo` (above) and `wi` (below).
 #[inline(always)]
-fn refracting_facet(wo: Vec3, wi: Vec3, eta: f32) -> Option<RefractingFacet> {
+pub(crate) fn refracting_facet(wo: Vec3, wi: Vec3, eta: f32) -> Option<RefractingFacet> {
     let h = wo + eta * wi;
     let length_squared = h.length_squared(); // is (wo · m + η wi · m)²
     let m = h * (1.0 / length_squared.sqrt()).copysign(h.z);
@@ -72,7 +73,7 @@ fn refracting_facet(wo: Vec3, wi: Vec3, eta: f32) -> Option<RefractingFacet> {
 }
 
 #[inline(always)]
-fn flip(w: Vec3) -> Vec3 {
+pub(crate) fn flip(w: Vec3) -> Vec3 {
     Vec3::new(w.x, w.y, -w.z)
 }
 

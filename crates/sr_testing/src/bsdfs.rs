@@ -7,9 +7,12 @@ use std::sync::LazyLock;
 
 use glam::Vec3;
 use sr_bsdf::{
-    AnyBsdf, AnyModel, Bsdf, Conductor, Dielectric, Diffuse, Mask, Microfacet, MicrofacetKind, Plastic, Rgb,
-    RoughConductor, RoughDielectric, RoughPlastic, RoughPlasticTables, SmoothCoat, ThinDielectric,
+    AnyBsdf, AnyModel, Bsdf, Conductor, Dielectric, Diffuse, DiffuseTransmission, Eon, Mask, Microfacet,
+    MicrofacetKind, OrenNayar, Plastic, Rgb, RoughConductor, RoughDielectric, RoughPlastic,
+    RoughPlasticTables, SmoothCoat, ThinDielectric,
 };
+
+use crate::{blends, compensated, principled};
 
 /// A name that tells cases apart, a model, and a direction from which it reflects or transmits.
 pub type BsdfCase = (String, AnyBsdf<'static>, Vec3);
@@ -18,10 +21,10 @@ const KINDS: [MicrofacetKind; 2] = [MicrofacetKind::Beckmann, MicrofacetKind::Gg
 const ALPHAS: [[f32; 2]; 6] = [[0.01, 0.01], [0.1, 0.1], [0.5, 0.5], [1.0, 1.0], [0.05, 0.4], [0.6, 0.15]];
 const COAT_ALPHAS: [f32; 3] = [0.05, 0.3, 1.0];
 
-const GREEN: Rgb = Rgb::new(0.2, 0.8, 0.5);
-const PINK: Rgb = Rgb::new(0.9, 0.7, 0.8);
+pub(crate) const GREEN: Rgb = Rgb::new(0.2, 0.8, 0.5);
+pub(crate) const PINK: Rgb = Rgb::new(0.9, 0.7, 0.8);
 /// η and k of copper at 630, 532 and 465 nm (Johnson & Christy 1972), rounded.
-const COPPER: (Rgb, Rgb) = (Rgb::new(0.27, 1.09, 1.18), Rgb::new(3.41, 2.58, 2.40));
+pub(crate) const COPPER: (Rgb, Rgb) = (Rgb::new(0.27, 1.09, 1.18), Rgb::new(3.41, 2.58, 2.40));
 
 /// The tables of rough plastic, for each kind and each of `COAT_ALPHAS`.
 static COATS: LazyLock<Vec<RoughPlasticTables>> = LazyLock::new(|| {
@@ -45,6 +48,34 @@ fn seen_from_several_directions((name, bsdf): (String, AnyBsdf<'static>)) -> Vec
         (format!("{name}, wo.z = {z}"), bsdf, wo)
     };
     above.iter().chain(below).map(case).collect()
+}
+
+/// Models that return all light that they receive, from any direction: a furnace has to be white.
+pub fn lossless_models() -> Vec<(String, AnyBsdf<'static>)> {
+    let mut models = vec![
+        ("white mirror".to_owned(), Conductor::new(None, Rgb::ONE).into()),
+        ("white dielectric".to_owned(), Dielectric::new(1.5, Rgb::ONE, Rgb::ONE).into()),
+        ("white diffuse".to_owned(), Diffuse::new(Rgb::ONE).into()),
+        ("white plastic".to_owned(), Plastic::new(SmoothCoat::new(1.5), Rgb::ONE, Rgb::ONE, true).into()),
+    ];
+    for roughness in [1e-4, 0.3, 1.0] {
+        models.push((format!("white EON {roughness}"), Eon::new(Rgb::ONE, roughness).into()));
+    }
+    models.extend(compensated::white_models());
+    models
+}
+
+/// Is the model of this name the same with directions exchanged? A tilted normal is not: it weighs light by the cosine
+/// with one normal, and receives it by that with another (Veach 1997, §5.3). Mitsuba's thin principled model leaves out
+/// transmission by facets that the transmitted direction meets again, but not by those that the other one does.
+pub fn is_reciprocal(name: &str) -> bool {
+    !["tilted", "two sides", "thin principled"].iter().any(|start| name.starts_with(start))
+}
+
+/// The most light that a model of this name may return for each unit that it receives. Burley's models add lobes without
+/// taking from others what these reflect.
+pub fn energy_limit(name: &str) -> f64 {
+    if name.contains("principled") { 1.7 } else { 1.0 }
 }
 
 /// All models, named.
@@ -73,6 +104,18 @@ pub fn bsdf_models() -> Vec<(String, AnyBsdf<'static>)> {
         models.push((format!("plastic 1.9 white, nonlinear: {nonlinear}"), plastic(1.9, Rgb::ONE)));
         models.push((format!("plastic black, nonlinear: {nonlinear}"), plastic(1.3, Rgb::ZERO)));
     }
+    for roughness in [0.0, 1e-4, 0.5, 1.0] {
+        models.push((format!("EON {roughness}"), Eon::new(GREEN, roughness).into()));
+        models.push((format!("Oren-Nayar {roughness}"), OrenNayar::new(GREEN, roughness).into()));
+    }
+    models.push(("EON 1 white".into(), Eon::new(Rgb::ONE, 1.0).into()));
+    for (reflectance, transmittance) in [(0.3 * GREEN, 0.6 * PINK), (Rgb::ZERO, GREEN), (GREEN, Rgb::ZERO)] {
+        let name = format!("diffuse transmission, {} and {}", reflectance.y, transmittance.y);
+        models.push((name, DiffuseTransmission::new(reflectance, transmittance).into()));
+    }
+    models.extend(blends::models());
+    models.extend(principled::models());
+    models.extend(compensated::models());
     for coat in COATS.iter() {
         let name = format!("plastic {:?} {}", coat.distribution().kind(), coat.distribution().alpha().x);
         models.push((name.clone(), RoughPlastic::new(coat, GREEN, PINK, false).into()));

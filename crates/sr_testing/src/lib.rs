@@ -1,10 +1,13 @@
 //! Shared test cases. Each list is long on purpose: a test over it must assert that it is not empty.
 
+mod blends;
 pub mod bsdfs;
+mod compensated;
 pub mod densities;
 pub mod density_tests;
 pub mod distributions;
 pub mod lobe;
+mod principled;
 pub mod scenes;
 
 pub use bsdfs::{BsdfCase, bsdf_cases, bsdf_models};

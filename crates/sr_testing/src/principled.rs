@@ -1,0 +1,64 @@
+//! The principled models, a parameter or a few at a time at either end.
+
+use sr_bsdf::{AnyBsdf, Principled, PrincipledInputs, PrincipledThin, PrincipledThinInputs};
+
+use crate::bsdfs::{GREEN, PINK};
+
+pub(crate) fn models() -> Vec<(String, AnyBsdf<'static>)> {
+    let plain = PrincipledInputs { base_color: GREEN, ..PrincipledInputs::default() };
+    let inputs = [
+        ("plain", plain),
+        ("rough", PrincipledInputs { roughness: 1.0, anisotropic: 1.0, ..plain }),
+        ("metal", PrincipledInputs { metallic: 1.0, roughness: 0.4, anisotropic: 0.8, ..plain }),
+        ("half metal", PrincipledInputs { metallic: 0.5, spec_tint: 0.7, flatness: 1.0, ..plain }),
+        ("glass", PrincipledInputs { base_color: PINK, spec_trans: 1.0, ..plain }),
+        (
+            "thin medium",
+            PrincipledInputs { base_color: PINK, spec_trans: 0.7, eta: 0.8, roughness: 0.7, ..plain },
+        ),
+        ("not bending", PrincipledInputs { eta: 1.0, metallic: 0.3, ..plain }),
+        ("velvet", PrincipledInputs { base_color: 0.3 * GREEN, sheen: 1.0, sheen_tint: 1.0, ..plain }),
+        ("coated", PrincipledInputs { clearcoat: 1.0, ..plain }),
+        (
+            "all",
+            PrincipledInputs {
+                metallic: 0.2,
+                spec_trans: 0.4,
+                anisotropic: 0.5,
+                spec_tint: 0.3,
+                sheen: 0.2,
+                sheen_tint: 0.5,
+                flatness: 0.3,
+                clearcoat: 0.6,
+                clearcoat_gloss: 0.2,
+                rates: [0.5, 2.0, 3.0],
+                ..plain
+            },
+        ),
+    ];
+    let thin = PrincipledThinInputs { base_color: GREEN, ..PrincipledThinInputs::default() };
+    let thin_inputs = [
+        ("plain", thin),
+        ("pane", PrincipledThinInputs { spec_trans: 1.0, roughness: 0.4, spec_tint: 0.5, ..thin }),
+        ("leaf", PrincipledThinInputs { diff_trans: 1.2, sheen: 0.3, ..thin }),
+        ("paper", PrincipledThinInputs { diff_trans: 2.0, roughness: 1.0, ..thin }),
+        (
+            "all",
+            PrincipledThinInputs {
+                spec_trans: 0.5,
+                diff_trans: 0.8,
+                anisotropic: 0.7,
+                eta: 1.3,
+                flatness: 0.6,
+                sheen: 0.2,
+                sheen_tint: 0.4,
+                rates: [2.0, 1.0, 0.5, 1.0],
+                ..thin
+            },
+        ),
+    ];
+    let full = inputs.map(|(name, inputs)| (format!("principled {name}"), Principled::new(inputs).into()));
+    let thin =
+        thin_inputs.map(|(name, i)| (format!("thin principled {name}"), PrincipledThin::new(i).into()));
+    full.into_iter().chain(thin).collect()
+}
