@@ -4,14 +4,14 @@
 //! directions to the integrator and local ones to the BSDF.
 
 use glam::{Vec2, Vec3};
-use sr_bsdf::{Bsdf, BsdfSample, Lobes};
+use sr_bsdf::{AnyBsdf, Bsdf, BsdfSample, Lobes};
 use sr_geometry::{Hit, Ray, Surface};
 use sr_scene::Rgb;
 
-use crate::material::{Bump, Side};
+use crate::material::{Face, Place};
 use crate::scene::Scene;
 
-/// An orthonormal frame with `n` as its +Z.
+/// An orthonormal frame with `n` as its +Z; left-handed behind surfaces whose tangents matter.
 #[derive(Clone, Copy, Debug)]
 struct Frame {
     s: Vec3,
@@ -52,46 +52,38 @@ pub(crate) struct Sight {
     frame: Frame,
     /// Towards where the path came from, in the frame.
     wo: Vec3,
-    /// The normal before a bump map tilted it: directions must lie on one side of both.
-    untilted: Option<Vec3>,
 }
 
 impl Sight {
-    /// Of a hit, seen along `ray`, and the side of the material that is seen.
-    #[inline(always)]
-    pub fn new<'a>(scene: &'a Scene, ray: &Ray, hit: &Hit, surface: &Surface) -> (Self, &'a Side) {
-        let (materials, material) = (&scene.materials, scene.material_of(hit.shape));
-        let wo = -ray.direction;
-        let mut normal = surface.ns;
-        if let Some(bump) = materials.side(materials.face(material, false).side).bump {
-            normal = tilted(scene, hit, surface, bump);
+    /// Of a hit, seen along `ray`, and the scattering model of the side of the material that is seen.
+    #[inline]
+    pub fn with_model<'a>(scene: &'a Scene, ray: &Ray, hit: &Hit, surface: &Surface) -> (Self, AnyBsdf<'a>) {
+        let (wo, normal) = (-ray.direction, surface.ns);
+        let Face { side, turn, .. } =
+            scene.materials.face(scene.material_of(hit.shape), wo.dot(normal) < 0.0);
+        let side = scene.materials.side(side);
+        let (mut frame, mut tangents) = (Frame::about(normal * turn), [Vec3::ZERO; 2]);
+        if side.needs_tangents {
+            let world = scene.geometry.tangents(surface, hit);
+            // The back is the front's mirror image: the tangents stay.
+            frame = Frame { n: normal * turn, ..Frame::along(normal, world.dpdu) };
+            tangents = [world.dpdu, world.dpdv].map(|w| frame.to_local(w));
         }
-        let face = materials.face(material, wo.dot(normal) < 0.0);
-        let (side, normal) = (materials.side(face.side), normal * face.turn);
-        let frame = if side.is_anisotropic {
-            Frame::along(normal, scene.geometry.tangents(surface, hit).dpdu)
-        } else {
-            Frame::about(normal)
-        };
-        (Self { wo: frame.to_local(wo), frame, untilted: side.bump.map(|_| surface.ns) }, side)
+        let place = Place { textures: &scene.textures, uv: surface.uv, wo: frame.to_local(wo), tangents };
+        (Self { wo: place.wo, frame }, scene.materials.bsdf(side, &place))
     }
-}
 
-impl Sight {
     /// Of a surface with normal `n` whose model does not tell the tangent from the bitangent, seen from where `wo`
     /// points, in world space.
     #[inline(always)]
     pub fn towards_viewer(n: Vec3, wo: Vec3) -> Self {
         let frame = Frame::about(n);
-        Self { wo: frame.to_local(wo), frame, untilted: None }
+        Self { wo: frame.to_local(wo), frame }
     }
 
     /// f · |cos θ| and the density with which `bsdf` samples `wi`, a direction in world space.
     #[inline(always)]
     pub fn eval<B: Bsdf>(&self, bsdf: &B, wi: Vec3) -> (Rgb, f32) {
-        if !self.is_consistent(wi) {
-            return (Rgb::ZERO, 0.0);
-        }
         let local = self.frame.to_local(wi);
         (bsdf.eval(self.wo, local) * local.z.abs(), bsdf.pdf(self.wo, local))
     }
@@ -99,9 +91,6 @@ impl Sight {
     /// f · |cos θ| for a direction in world space.
     #[inline(always)]
     pub fn f_cos<B: Bsdf>(&self, bsdf: &B, wi: Vec3) -> Rgb {
-        if !self.is_consistent(wi) {
-            return Rgb::ZERO;
-        }
         let local = self.frame.to_local(wi);
         bsdf.eval(self.wo, local) * local.z.abs()
     }
@@ -111,17 +100,7 @@ impl Sight {
     pub fn sample<B: Bsdf>(&self, bsdf: &B, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
         let mut s = bsdf.sample(self.wo, u_lobe, u)?;
         s.wi = self.frame.to_world(s.wi);
-        (s.delta || self.is_consistent(s.wi)).then_some(s)
-    }
-
-    #[inline(always)]
-    fn is_consistent(&self, wi: Vec3) -> bool {
-        self.untilted.is_none_or(|ns| ns.dot(wi) * self.frame.n.dot(wi) * self.facing(ns) > 0.0)
-    }
-
-    /// +1 if the frame's normal is on the side of `ns`, −1 if it was turned to the back.
-    fn facing(&self, ns: Vec3) -> f32 {
-        ns.dot(self.frame.n).signum()
+        Some(s)
     }
 }
 
@@ -137,11 +116,6 @@ impl<B: Bsdf> Vertex<'_, B> {
     #[inline]
     pub fn lobes(&self) -> Lobes {
         self.bsdf.lobes()
-    }
-
-    /// The shading normal, on the viewer's side of a two-sided material.
-    pub fn normal(&self) -> Vec3 {
-        self.sight.frame.n
     }
 
     /// [`Sight::eval`].
@@ -175,16 +149,9 @@ impl<B: Bsdf> Vertex<'_, B> {
     }
 }
 
-/// The shading normal of the surface displaced along its normal by a texture (Blinn 1978).
-fn tilted(scene: &Scene, hit: &Hit, surface: &Surface, bump: Bump) -> Vec3 {
-    let n = surface.ns;
-    let tangents = scene.geometry.tangents(surface, hit);
-    let slope = bump.scale * scene.textures.gradient(bump.texture, surface.uv);
-    let dpdu = tangents.dpdu + n * (slope.x - n.dot(tangents.dpdu));
-    let dpdv = tangents.dpdv + n * (slope.y - n.dot(tangents.dpdv));
-    match dpdu.cross(dpdv).try_normalize() {
-        Some(tilted) if tilted.dot(n) < 0.0 => -tilted,
-        Some(tilted) => tilted,
-        None => n,
+impl Vertex<'_, AnyBsdf<'_>> {
+    /// The shading normal, on the viewer's side of a two-sided material, with its bumps.
+    pub fn normal(&self) -> Vec3 {
+        self.sight.frame.to_world(self.bsdf.normal())
     }
 }

@@ -20,7 +20,9 @@ pub use desc::{MaterialId, SceneDesc, Settings, TextureId};
 pub use diagnostic::{Diagnostic, Diagnostics, Severity, SourceId, Sources, Span};
 pub use image::{Image, Pixels};
 pub use light::LightDesc;
-pub use material::{ColorInput, MaterialDesc, MicrofacetKind, ScalarInput};
+pub use material::{
+    ColorInput, MaterialDesc, MicrofacetKind, PrincipledDesc, PrincipledThinDesc, ScalarInput, Tilting,
+};
 pub use shape::{Emission, Geometry, GroupDesc, InstanceDesc, MeshDesc, ShapeDesc};
 pub use texture::{Filter, TextureDesc, Wrap};
 pub use validate::{MAX_FILM_PIXELS, validate};

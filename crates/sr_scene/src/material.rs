@@ -67,6 +67,8 @@ pub enum MaterialDesc {
         specular_reflectance: ColorInput,
         /// Scales transmission; physically 1.
         specular_transmittance: ColorInput,
+        /// Is the light that bounces between facets added? For constant, isotropic roughness only.
+        multiscatter: bool,
     },
     /// A smooth metal.
     Conductor {
@@ -85,6 +87,8 @@ pub enum MaterialDesc {
         eta_k: Option<(ColorInput, ColorInput)>,
         /// Scales reflection; physically 1.
         specular_reflectance: ColorInput,
+        /// Is the light that bounces between facets added? For constant, isotropic roughness only.
+        multiscatter: bool,
     },
     /// A smooth dielectric coating over a diffuse base.
     Plastic {
@@ -111,7 +115,49 @@ pub enum MaterialDesc {
         specular_reflectance: ColorInput,
         /// Does the base's colour saturate by interreflection below the coating?
         nonlinear: bool,
+        /// Does the coating lose nothing: is what it does not reflect let in?
+        multiscatter: bool,
     },
+    /// Rough diffuse reflection that preserves energy (Portsmouth, Kutz & Hill 2025).
+    Eon {
+        /// Albedo of the facets.
+        reflectance: ColorInput,
+        /// In [0, 1]; 0 is Lambertian.
+        roughness: ScalarInput,
+    },
+    /// Rough diffuse reflection (Oren & Nayar 1994, the qualitative model).
+    OrenNayar {
+        /// Albedo of the facets.
+        reflectance: ColorInput,
+        /// Standard deviation of the facets' angle, in radians.
+        sigma: ScalarInput,
+    },
+    /// Diffuse reflection and transmission.
+    DiffuseTransmission {
+        /// Fraction of light reflected.
+        reflectance: ColorInput,
+        /// Fraction of light transmitted.
+        transmittance: ColorInput,
+    },
+    /// A metal under a dielectric coat.
+    CoatedConductor {
+        /// Microfacet distribution of both.
+        kind: MicrofacetKind,
+        /// Roughness of the coat; 0 is smooth.
+        coat_alpha: f32,
+        /// Index of the coat over the exterior's, at least 1.
+        eta: f32,
+        /// Roughness of the metal.
+        alpha: f32,
+        /// Complex index of the metal over the exterior's; `None` reflects everything.
+        eta_k: Option<(ColorInput, ColorInput)>,
+        /// Scales what the metal reflects; physically 1.
+        specular_reflectance: ColorInput,
+    },
+    /// Burley's model with transmission.
+    Principled(PrincipledDesc),
+    /// Burley's model of a thin surface.
+    PrincipledThin(PrincipledThinDesc),
     /// One model on each side of the surface.
     TwoSided {
         /// Seen from the side of the normal.
@@ -126,13 +172,105 @@ pub enum MaterialDesc {
         /// What is seen where it is opaque.
         inner: MaterialId,
     },
+    /// Two materials in one place.
+    Blend {
+        /// The share of `materials[1]`; the rest is `materials[0]`. Brought into [0, 1].
+        weight: ScalarInput,
+        /// What is mixed.
+        materials: [MaterialId; 2],
+    },
     /// Tilts the shading normal by a displacement texture.
     BumpMap {
         /// Displacement in scene units per unit of texture value.
         scale: f32,
         /// Displacement.
         texture: TextureId,
+        /// What tilting is like.
+        tilting: Tilting,
         /// What is tilted.
         inner: MaterialId,
     },
+    /// Tilts the shading normal to one that a texture holds.
+    NormalMap {
+        /// (n + 1) / 2, n in the frame of the tangent, the bitangent and the shading normal.
+        normal: ColorInput,
+        /// What tilting is like.
+        tilting: Tilting,
+        /// What is tilted.
+        inner: MaterialId,
+    },
+}
+
+/// What is done besides tilting a normal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tilting {
+    /// Are normals that face away from the viewer turned about the untilted one, so that nothing is black?
+    pub flip_invalid_normals: bool,
+    /// Is light at grazing angles dimmed, as the bumps' shadows would?
+    pub shadows: bool,
+}
+
+impl Default for Tilting {
+    /// Both.
+    fn default() -> Self {
+        Self { flip_invalid_normals: true, shadows: true }
+    }
+}
+
+/// What a principled material is made from. Numbers are in [0, 1] unless it says otherwise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PrincipledDesc {
+    /// Of the diffuse base, of metals, of tints.
+    pub base_color: ColorInput,
+    /// Its square is α.
+    pub roughness: ScalarInput,
+    /// Stretches highlights along the tangent.
+    pub anisotropic: ScalarInput,
+    /// From dielectric to metal.
+    pub metallic: ScalarInput,
+    /// From a diffuse base to a refracting interface.
+    pub spec_trans: ScalarInput,
+    /// Interior over exterior index.
+    pub eta: f32,
+    /// Tints the dielectric reflection.
+    pub spec_tint: ScalarInput,
+    /// Brightens grazing angles.
+    pub sheen: ScalarInput,
+    /// Tints the sheen.
+    pub sheen_tint: ScalarInput,
+    /// From the diffuse base to a stand-in for scattering below the surface.
+    pub flatness: ScalarInput,
+    /// A second reflection.
+    pub clearcoat: ScalarInput,
+    /// How sharp that is.
+    pub clearcoat_gloss: ScalarInput,
+    /// How often diffuse base, main reflection and clear coat are sampled, relatively; not negative.
+    pub rates: [f32; 3],
+}
+
+/// What a thin principled material is made from. Numbers are in [0, 1] unless it says otherwise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PrincipledThinDesc {
+    /// Of the diffuse base, of what is transmitted, of tints.
+    pub base_color: ColorInput,
+    /// Its square is α.
+    pub roughness: ScalarInput,
+    /// Stretches highlights along the tangent.
+    pub anisotropic: ScalarInput,
+    /// From a diffuse surface to a pane.
+    pub spec_trans: ScalarInput,
+    /// Interior over exterior index, positive.
+    pub eta: ScalarInput,
+    /// Tints reflection.
+    pub spec_tint: ScalarInput,
+    /// Brightens grazing angles.
+    pub sheen: ScalarInput,
+    /// Tints the sheen.
+    pub sheen_tint: ScalarInput,
+    /// From the diffuse base to a stand-in for scattering below the surface.
+    pub flatness: ScalarInput,
+    /// Of the diffuse light, how much passes: in [0, 2], 2 being all.
+    pub diff_trans: ScalarInput,
+    /// How often specular reflection and transmission, diffuse reflection and transmission are sampled, relatively.
+    pub rates: [f32; 4],
 }

@@ -1,6 +1,6 @@
 //! BSDFs.
 
-use sr_scene::{ColorInput, Diagnostic, MaterialDesc, MaterialId, MicrofacetKind, Rgb, ScalarInput};
+use sr_scene::{ColorInput, Diagnostic, MaterialDesc, MaterialId, MicrofacetKind, Rgb, ScalarInput, Tilting};
 
 use super::color::Role;
 use super::{Lowering, key};
@@ -17,12 +17,21 @@ const KNOWN: &[&str] = &[
     "roughdielectric",
     "plastic",
     "roughplastic",
+    "coateddiffuse",
+    "coatedconductor",
+    "eon",
+    "roughdiffuse",
+    "diffusetransmission",
+    "principled",
+    "principledthin",
     "twosided",
     "mask",
+    "blendbsdf",
     "bumpmap",
+    "normalmap",
     "null",
 ];
-const GREY: Rgb = Rgb::splat(0.5);
+pub(super) const GREY: Rgb = Rgb::splat(0.5);
 
 impl<'a> Lowering<'a, '_> {
     /// The material of a BSDF; each node is lowered once.
@@ -83,6 +92,7 @@ impl<'a> Lowering<'a, '_> {
                 eta: self.eta(props, "bk7"),
                 specular_reflectance: self.factor(props, "specular_reflectance", Rgb::ONE),
                 specular_transmittance: self.factor(props, "specular_transmittance", Rgb::ONE),
+                multiscatter: self.multiscatter(props),
             },
             "conductor" => MaterialDesc::Conductor {
                 eta_k: self.eta_k(props),
@@ -93,6 +103,7 @@ impl<'a> Lowering<'a, '_> {
                 alpha: self.alpha(props),
                 eta_k: self.eta_k(props),
                 specular_reflectance: self.factor(props, "specular_reflectance", Rgb::ONE),
+                multiscatter: self.multiscatter(props),
             },
             "plastic" => MaterialDesc::Plastic {
                 eta: self.eta(props, "polypropylene"),
@@ -102,12 +113,26 @@ impl<'a> Lowering<'a, '_> {
             },
             "roughplastic" => MaterialDesc::RoughPlastic {
                 kind: self.distribution(props),
-                alpha: self.constant_alpha(props),
+                alpha: self.constant_alpha(props, "alpha", 0.1),
                 eta: self.eta(props, "polypropylene"),
                 diffuse_reflectance: self.factor(props, "diffuse_reflectance", GREY),
                 specular_reflectance: self.factor(props, "specular_reflectance", Rgb::ONE),
                 nonlinear: props.boolean("nonlinear", self.d).unwrap_or(false),
+                multiscatter: self.multiscatter(props),
             },
+            "coateddiffuse" => self.coated_diffuse(props),
+            "coatedconductor" => self.coated_conductor(props),
+            "eon" => MaterialDesc::Eon {
+                reflectance: self.factor(props, "reflectance", GREY),
+                roughness: self.scalar(props, "roughness", 0.5),
+            },
+            "roughdiffuse" => self.rough_diffuse(props),
+            "diffusetransmission" => MaterialDesc::DiffuseTransmission {
+                reflectance: self.factor(props, "reflectance", Rgb::splat(0.25)),
+                transmittance: self.factor(props, "transmittance", Rgb::splat(0.25)),
+            },
+            "principled" => self.principled(props),
+            "principledthin" => self.principled_thin(props),
             "twosided" => {
                 let nested = self.nested(props, "bsdf");
                 match nested[..] {
@@ -132,13 +157,31 @@ impl<'a> Lowering<'a, '_> {
                 let inner = self.default_material(node);
                 MaterialDesc::Mask { opacity: ScalarInput::Constant(0.0), inner }
             }
+            "blendbsdf" => {
+                let weight = self.scalar(props, "weight", 0.5);
+                match self.nested(props, "bsdf")[..] {
+                    [first, second] => MaterialDesc::Blend {
+                        weight,
+                        materials: [self.material(first), self.material(second)],
+                    },
+                    ref others => return self.wrong_nesting(node, "two BSDFs", others.len()),
+                }
+            }
             "bumpmap" => return self.bump_map(node, props),
+            "normalmap" => {
+                let tilting = self.tilting(props);
+                let normal = self.factor(props, "normalmap", Rgb::new(0.5, 0.5, 1.0));
+                match self.nested(props, "bsdf")[..] {
+                    [inner] => MaterialDesc::NormalMap { normal, tilting, inner: self.material(inner) },
+                    ref others => return self.wrong_nesting(node, "one BSDF", others.len()),
+                }
+            }
             _ => return self.stand_in(node, props),
         };
         Lowered::New(desc)
     }
 
-    fn factor(&mut self, props: &mut Props<'a>, name: &'static str, default: Rgb) -> ColorInput {
+    pub(super) fn factor(&mut self, props: &mut Props<'a>, name: &'static str, default: Rgb) -> ColorInput {
         self.color(props, name, default, Role::Factor)
     }
 
@@ -150,6 +193,7 @@ impl<'a> Lowering<'a, '_> {
 
     fn bump_map(&mut self, node: &'a Node, props: &mut Props<'a>) -> Lowered {
         let scale = props.float("scale", self.d).unwrap_or(1.0);
+        let tilting = self.tilting(props);
         // The texture goes by several names; it is the only one there can be.
         let textures = self.nested(props, "texture");
         let inner = match self.nested(props, "bsdf")[..] {
@@ -160,9 +204,20 @@ impl<'a> Lowering<'a, '_> {
             return self.wrong_nesting(node, "one texture", textures.len());
         };
         match self.texture(texture, Role::Factor) {
-            ColorInput::Texture(texture) => Lowered::New(MaterialDesc::BumpMap { scale, texture, inner }),
+            ColorInput::Texture(texture) => {
+                Lowered::New(MaterialDesc::BumpMap { scale, texture, tilting, inner })
+            }
             // A constant displacement tilts nothing.
             ColorInput::Constant(_) => Lowered::Same(inner),
+        }
+    }
+
+    fn tilting(&mut self, props: &mut Props<'a>) -> Tilting {
+        let default = Tilting::default();
+        let flip = props.boolean("flip_invalid_normals", self.d);
+        Tilting {
+            flip_invalid_normals: flip.unwrap_or(default.flip_invalid_normals),
+            shadows: props.boolean("use_shadowing_function", self.d).unwrap_or(default.shadows),
         }
     }
 
@@ -192,7 +247,7 @@ impl<'a> Lowering<'a, '_> {
         Lowered::New(MaterialDesc::TwoSided { front: side, back: side })
     }
 
-    fn distribution(&mut self, props: &mut Props<'a>) -> MicrofacetKind {
+    pub(super) fn distribution(&mut self, props: &mut Props<'a>) -> MicrofacetKind {
         match props.string("distribution", self.d) {
             None | Some(("beckmann", _)) => MicrofacetKind::Beckmann,
             Some(("ggx", _)) => MicrofacetKind::Ggx,
@@ -211,22 +266,27 @@ impl<'a> Lowering<'a, '_> {
         [self.scalar(props, "alpha", 0.1); 2]
     }
 
-    fn constant_alpha(&mut self, props: &mut Props<'a>) -> f32 {
-        match self.scalar(props, "alpha", 0.1) {
+    pub(super) fn constant_alpha(&mut self, props: &mut Props<'a>, name: &'static str, default: f32) -> f32 {
+        match self.scalar(props, name, default) {
             ScalarInput::Constant(alpha) => alpha,
             ScalarInput::Texture(_) => {
-                let message = format!("\"alpha\" of {} cannot be a texture", props.node.title());
+                let message = format!("\"{name}\" of {} cannot be a texture", props.node.title());
                 self.d.push(
                     Diagnostic::warning("mitsuba::texture-not-possible", &props.node.span, message)
-                        .consequence("the default, 0.1, is used"),
+                        .consequence(format!("the default, {default}, is used")),
                 );
-                0.1
+                default
             }
         }
     }
 
+    /// Ours: is light that bounces between facets added?
+    fn multiscatter(&mut self, props: &mut Props<'a>) -> bool {
+        props.boolean("multiscatter", self.d).unwrap_or(false)
+    }
+
     /// Interior over exterior index of refraction.
-    fn eta(&mut self, props: &mut Props<'a>, interior: &str) -> f32 {
+    pub(super) fn eta(&mut self, props: &mut Props<'a>, interior: &str) -> f32 {
         let default = tables::ior(interior).unwrap_or(1.5);
         let interior = self.ior(props, "int_ior").unwrap_or(default);
         let exterior = self.ior(props, "ext_ior").unwrap_or(1.000277);
@@ -251,7 +311,7 @@ impl<'a> Lowering<'a, '_> {
     }
 
     /// A metal by name, or `eta` and `k`; `None` is a perfect mirror, which is also the default.
-    fn eta_k(&mut self, props: &mut Props<'a>) -> Option<(ColorInput, ColorInput)> {
+    pub(super) fn eta_k(&mut self, props: &mut Props<'a>) -> Option<(ColorInput, ColorInput)> {
         let exterior =
             self.ior(props, "ext_eta").or_else(|| self.ior(props, "ext_ior")).unwrap_or(1.0) as f32;
         let material = props.string("material", self.d);

@@ -7,6 +7,7 @@ mod color;
 mod emitter;
 mod jobs;
 mod material;
+mod principled;
 mod sensor;
 mod settings;
 mod shape;

@@ -22,7 +22,7 @@ use sr_scene::Rgb;
 use crate::light::Target;
 use crate::scene::Scene;
 use crate::vertex::Vertex;
-use sr_bsdf::Bsdf;
+use sr_bsdf::{AnyBsdf, Bsdf};
 
 pub use path::PathTracer;
 pub use strategies::StrategyTracer;
@@ -123,7 +123,7 @@ pub struct FirstHit {
 
 impl FirstHit {
     #[inline]
-    fn new<B: Bsdf>(vertex: &Vertex<'_, B>, distance: f32) -> Self {
+    fn new(vertex: &Vertex<'_, AnyBsdf>, distance: f32) -> Self {
         Self { albedo: vertex.bsdf.albedo(), normal: vertex.normal(), depth: distance }
     }
 }

@@ -222,8 +222,8 @@ struct Arrival<'a> {
 impl<'a> Arrival<'a> {
     fn new(scene: &'a Scene, ray: &Ray, hit: &Hit) -> Self {
         let surface = scene.geometry.surface(ray, hit);
-        let (sight, side) = Sight::new(scene, ray, hit, &surface);
-        Self { bsdf: scene.materials.bsdf(side, surface.uv, &scene.textures), surface, sight }
+        let (sight, bsdf) = Sight::with_model(scene, ray, hit, &surface);
+        Self { surface, sight, bsdf }
     }
 
     fn vertex(&self) -> Vertex<'_, AnyBsdf<'a>> {

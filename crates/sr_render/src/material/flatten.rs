@@ -1,82 +1,119 @@
 //! Descriptions' trees to [`Side`]s.
 
-use sr_bsdf::{Microfacet, MicrofacetKind, RoughPlasticTables, SmoothCoat};
-use sr_scene::{ColorInput, MaterialDesc, Rgb, ScalarInput};
+use sr_bsdf::{MAX_PARTS, MAX_STEPS};
+use sr_scene::{ColorInput, MaterialDesc, MaterialId, Rgb, ScalarInput};
 
-use super::kind::{COLORS, Kind, SCALARS};
-use super::{Bump, Face, Inputs, Materials, Queue, Side};
+use super::kind::Kind;
+use super::parts::{Factor, ModelSource, NormalSource, PartSource, Parts, StepSource, TiltSource};
+use super::uncommon::Tables;
+use super::{Face, Inputs, Materials, Queue, Side, Sources};
 
-/// Nesting that has no meaning.
+/// More in one material than is done.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MaterialError {
-    /// A mask in a mask, a bump map in a bump map, two sides of two sides.
-    #[error("material {material}: {what} inside {what} is not supported")]
-    Nested {
-        /// Index of the outer material.
+    /// Too many models, or frames within frames.
+    #[error("material {material} has {count} {what}; at most {most} are possible")]
+    TooMany {
+        /// Index of the material.
         material: u32,
-        /// What is nested in itself.
+        /// What there is too much of.
         what: &'static str,
+        /// How many there are.
+        count: usize,
+        /// How many there can be.
+        most: usize,
     },
 }
 
 /// A surface: what it is seen from the front, and from behind if that differs from the front unturned.
+#[derive(Clone)]
 struct Material {
     /// Used on both sides, with directions as they are, if there is no `back`.
     front: Unfinished,
-    /// Used from behind, with the normal turned to the viewer.
     back: Option<Unfinished>,
 }
 
 /// A side in the making.
-#[derive(Clone, Copy)]
+#[derive(Clone, Default)]
 struct Unfinished {
-    opacity: Option<ScalarInput>,
-    bump: Option<Bump>,
-    kind: Kind,
-    colors: [ColorInput; COLORS],
-    scalars: [ScalarInput; SCALARS],
+    parts: Vec<UnfinishedPart>,
+    has_holes: bool,
+}
+
+/// A model in the making.
+#[derive(Clone)]
+struct UnfinishedPart {
+    factors: Vec<Factor>,
+    /// Is it made for the front, but seen from behind?
+    is_mirrored: bool,
+    /// In the mirror, if there is one; outermost first.
+    tilts: Vec<TiltSource>,
+    model: ModelSource,
+}
+
+impl From<ModelSource> for Material {
+    fn from(model: ModelSource) -> Self {
+        let part = UnfinishedPart { factors: Vec::new(), is_mirrored: false, tilts: Vec::new(), model };
+        Self { front: Unfinished { parts: vec![part], has_holes: false }, back: None }
+    }
 }
 
 impl Material {
-    fn with_sides(
-        self,
-        change: impl Fn(Unfinished) -> Result<Unfinished, MaterialError>,
-    ) -> Result<Self, MaterialError> {
-        Ok(Self { front: change(self.front)?, back: self.back.map(&change).transpose()? })
+    fn with_sides(mut self, change: impl Fn(&mut Unfinished)) -> Self {
+        change(&mut self.front);
+        self.back.as_mut().map(change);
+        self
+    }
+
+    fn tilted(self, tilt: TiltSource) -> Self {
+        self.with_sides(|side| {
+            for part in &mut side.parts {
+                part.tilts.insert(0, TiltSource { is_mirrored: part.is_mirrored, ..tilt });
+            }
+        })
     }
 }
 
 impl Unfinished {
-    /// Without holes or bumps. Inputs beyond those given are 0.
-    fn plain(kind: Kind, colors: &[ColorInput], scalars: &[ScalarInput]) -> Self {
-        let mut side = Self {
-            opacity: None,
-            bump: None,
-            kind,
-            colors: [ColorInput::Constant(Rgb::ZERO); COLORS],
-            scalars: [ScalarInput::Constant(0.0); SCALARS],
+    fn times(mut self, factor: Factor) -> Self {
+        self.parts.iter_mut().for_each(|part| part.factors.push(factor));
+        self
+    }
+
+    fn and(mut self, other: Self) -> Self {
+        self.parts.extend(other.parts);
+        Self { has_holes: self.has_holes || other.has_holes, ..self }
+    }
+
+    /// Without the parts that are never seen.
+    fn pruned(mut self) -> Self {
+        let is_zero = |factor: &Factor| match factor.weight {
+            ScalarInput::Constant(weight) => {
+                if factor.is_rest {
+                    weight >= 1.0
+                } else {
+                    weight <= 0.0
+                }
+            }
+            ScalarInput::Texture(_) => false,
         };
-        side.colors[..colors.len()].copy_from_slice(colors);
-        side.scalars[..scalars.len()].copy_from_slice(scalars);
-        side
+        self.parts.retain(|part| !part.factors.iter().any(is_zero));
+        self
     }
 
-    fn is_textured(&self) -> bool {
-        let is_color = |c: &ColorInput| matches!(c, ColorInput::Texture(_));
-        let is_scalar = |s: &ScalarInput| matches!(s, ScalarInput::Texture(_));
-        self.colors.iter().any(is_color) || self.scalars.iter().chain(&self.opacity).any(is_scalar)
-    }
-
-    fn is_anisotropic(&self) -> bool {
-        let is_rough = matches!(self.kind, Kind::RoughConductor { .. } | Kind::RoughDielectric { .. });
-        is_rough && self.scalars[0] != self.scalars[1]
-    }
-}
-
-fn microfacet_kind(kind: sr_scene::MicrofacetKind) -> MicrofacetKind {
-    match kind {
-        sr_scene::MicrofacetKind::Beckmann => MicrofacetKind::Beckmann,
-        sr_scene::MicrofacetKind::Ggx => MicrofacetKind::Ggx,
+    /// The only model, of a common kind in the surface's own frame, and its opacity, if that is all there is.
+    fn single(&self) -> Option<(u32, Sources, Option<ScalarInput>)> {
+        let [UnfinishedPart { factors, tilts, model: ModelSource::Common { kind, sources }, .. }] =
+            &self.parts[..]
+        else {
+            return None;
+        };
+        let opacity = match factors[..] {
+            [] => None,
+            [Factor { weight, is_rest: false }] => Some(weight),
+            _ => return None,
+        };
+        tilts.is_empty().then_some((*kind, *sources, opacity))
     }
 }
 
@@ -84,153 +121,225 @@ impl Materials {
     /// Flattens descriptions, which have been validated.
     ///
     /// # Errors
-    /// If a material nests what cannot be nested.
+    /// If a material has too many models or frames.
     pub fn new(descs: &[MaterialDesc]) -> Result<Self, MaterialError> {
-        let faces = Vec::with_capacity(descs.len());
-        let mut all = Self { faces, sides: Vec::new(), kinds: Vec::new(), coats: Vec::new() };
+        let mut all = Self {
+            faces: Vec::with_capacity(descs.len()),
+            sides: Vec::new(),
+            kinds: Vec::new(),
+            coats: Vec::new(),
+            parts: Parts::default(),
+            tables: Tables::default(),
+        };
         for id in 0..descs.len() {
-            let Material { front, back } = all.flatten(descs, id as u32)?;
-            let tilts = front.bump.is_some();
-            let front = all.add(front, tilts);
-            let back = back.map_or(front, |back| Face { turn: -1.0, ..all.add(back, tilts) });
+            let Material { front, back } = all.flatten(descs, MaterialId(id as u32));
+            let front = all.add(front, id as u32)?;
+            let back = back.map_or(Ok(front), |back| all.add(back, id as u32))?;
             all.faces.push([front, back]);
         }
         Ok(all)
     }
 
-    /// `tilts`: does a bump map decide which side is seen?
-    fn add(&mut self, side: Unfinished, tilts: bool) -> Face {
-        let Unfinished { opacity, bump, kind, colors, scalars } = side;
-        let has_holes = opacity.is_some();
-        let opacity = opacity.unwrap_or(ScalarInput::Constant(1.0));
-        let constant = |scalar| match scalar {
-            ScalarInput::Constant(scalar) => scalar,
-            ScalarInput::Texture(_) => 0.0,
+    fn add(&mut self, side: Unfinished, material: u32) -> Result<Face, MaterialError> {
+        let is_turned = !side.parts.is_empty() && side.parts.iter().all(|part| part.is_mirrored);
+        let face = match side.single() {
+            Some((kind, sources, opacity)) => self.add_common(kind, sources, opacity),
+            None => self.add_parts(side.pruned(), is_turned, material)?,
         };
-        let known = self.kinds.iter().position(|&k| k == kind);
-        let number = known.unwrap_or_else(|| {
-            self.kinds.push(kind);
-            self.kinds.len() - 1
-        }) as u32;
-        let is_anisotropic = side.is_anisotropic();
-        let queue = if tilts || bump.is_some() || is_anisotropic {
+        Ok(Face { turn: if is_turned { -1.0 } else { 1.0 }, ..face })
+    }
+
+    fn add_common(&mut self, kind: u32, sources: Sources, opacity: Option<ScalarInput>) -> Face {
+        let needs_tangents = is_anisotropic(&self.kinds, kind, &sources);
+        let queue = if needs_tangents {
             Queue::SINGLE
-        } else if kind == Kind::Diffuse && !has_holes {
+        } else if self.kinds[kind as usize] == Kind::Diffuse && opacity.is_none() {
             Queue::LAMBERT
         } else {
-            Queue::of_kind(number)
+            Queue::of_kind(kind)
         };
+        let opacity = opacity.unwrap_or(ScalarInput::Constant(1.0));
+        let (constant, is_textured) = constants(&sources, opacity);
+        let (parts, has_holes) = (0..0, false);
         self.sides.push(Side {
-            kind: number,
-            colors,
-            scalars,
+            kind,
+            sources,
             opacity,
-            constant: Inputs {
-                colors: colors.map(|color| match color {
-                    ColorInput::Constant(color) => color,
-                    ColorInput::Texture(_) => Rgb::ZERO,
-                }),
-                scalars: scalars.map(constant),
-                opacity: constant(opacity),
-            },
-            bump,
-            is_textured: side.is_textured(),
-            is_anisotropic,
+            constant,
+            parts,
+            has_holes,
+            is_textured,
+            needs_tangents,
         });
-        let (albedo, has_picture) = match colors[0] {
+        let (albedo, has_picture) = match sources.colors[0] {
             ColorInput::Constant(albedo) => (albedo, false),
             ColorInput::Texture(_) => (Rgb::ZERO, queue == Queue::LAMBERT),
         };
         Face { side: self.sides.len() as u32 - 1, queue, turn: 1.0, albedo, has_picture }
     }
 
-    fn flatten(&mut self, descs: &[MaterialDesc], id: u32) -> Result<Material, MaterialError> {
-        let nested = |what| MaterialError::Nested { material: id, what };
-        Ok(match &descs[id as usize] {
-            MaterialDesc::TwoSided { front, back } => {
-                let (front, back) = (self.flatten(descs, front.0)?, self.flatten(descs, back.0)?);
-                if front.back.is_some() || back.back.is_some() {
-                    return Err(nested("twosided"));
-                }
-                Material { front: front.front, back: Some(back.front) }
-            }
-            MaterialDesc::Mask { opacity, inner } => {
-                self.flatten(descs, inner.0)?.with_sides(|side| match side.opacity {
-                    Some(_) => Err(nested("mask")),
-                    None => Ok(Unfinished { opacity: Some(*opacity), ..side }),
-                })?
-            }
-            MaterialDesc::BumpMap { scale, texture, inner } => {
-                self.flatten(descs, inner.0)?.with_sides(|side| match side.bump {
-                    Some(_) => Err(nested("bumpmap")),
-                    None => Ok(Unfinished { bump: Some(Bump { scale: *scale, texture: *texture }), ..side }),
-                })?
-            }
-            plain => Material { front: self.side_of(plain), back: None },
-        })
-    }
-
-    fn side_of(&mut self, desc: &MaterialDesc) -> Unfinished {
-        let plain = Unfinished::plain;
-        match *desc {
-            MaterialDesc::Diffuse { reflectance } => plain(Kind::Diffuse, &[reflectance], &[]),
-            MaterialDesc::Dielectric { eta, specular_reflectance: r, specular_transmittance: t } => {
-                plain(Kind::Dielectric, &[r, t], &[ScalarInput::Constant(eta)])
-            }
-            MaterialDesc::ThinDielectric { eta, specular_reflectance: r, specular_transmittance: t } => {
-                plain(Kind::ThinDielectric, &[r, t], &[ScalarInput::Constant(eta)])
-            }
-            MaterialDesc::RoughDielectric {
-                kind,
-                alpha: [x, y],
-                eta,
-                specular_reflectance: r,
-                specular_transmittance: t,
-            } => {
-                let kind = Kind::RoughDielectric { shape: microfacet_kind(kind) };
-                plain(kind, &[r, t], &[x, y, ScalarInput::Constant(eta)])
-            }
-            MaterialDesc::Conductor { eta_k, specular_reflectance: r } => {
-                let kind = Kind::Conductor { has_index: eta_k.is_some() };
-                plain(kind, &metal_colors(r, eta_k), &[])
-            }
-            MaterialDesc::RoughConductor { kind, alpha, eta_k, specular_reflectance: r } => {
-                let (shape, has_index) = (microfacet_kind(kind), eta_k.is_some());
-                plain(Kind::RoughConductor { shape, has_index }, &metal_colors(r, eta_k), &alpha)
-            }
-            MaterialDesc::Plastic { eta, diffuse_reflectance: d, specular_reflectance: s, nonlinear } => {
-                plain(Kind::Plastic { coat: SmoothCoat::new(eta), nonlinear }, &[d, s], &[])
-            }
-            MaterialDesc::RoughPlastic {
-                kind,
-                alpha,
-                eta,
-                diffuse_reflectance: d,
-                specular_reflectance: s,
-                nonlinear,
-            } => {
-                let coat = self.coat(microfacet_kind(kind), alpha, eta);
-                plain(Kind::RoughPlastic { coat, nonlinear }, &[d, s], &[])
-            }
-            MaterialDesc::TwoSided { .. } | MaterialDesc::Mask { .. } | MaterialDesc::BumpMap { .. } => {
-                unreachable!("flatten handles what nests")
-            }
+    /// `is_turned`: is the normal turned to the viewer already, so that parts need no mirror?
+    fn add_parts(&mut self, side: Unfinished, is_turned: bool, material: u32) -> Result<Face, MaterialError> {
+        let at_most = |most, what, count| {
+            if count > most { Err(MaterialError::TooMany { material, what, count, most }) } else { Ok(()) }
+        };
+        at_most(MAX_PARTS, "models in one place", side.parts.len())?;
+        let mut needs_tangents = false;
+        let first = self.parts.parts.len();
+        for UnfinishedPart { factors, is_mirrored, tilts, model } in side.parts {
+            needs_tangents |= !tilts.is_empty() || is_anisotropic_model(&self.kinds, &model);
+            let mirror = (is_mirrored && !is_turned).then_some(StepSource::Mirror);
+            let steps = mirror.into_iter().chain(tilts.into_iter().map(StepSource::Tilt));
+            let (factors_start, steps_start) = (self.parts.factors.len(), self.parts.steps.len());
+            self.parts.factors.extend(factors);
+            self.parts.steps.extend(steps);
+            at_most(MAX_STEPS, "frames within one another", self.parts.steps.len() - steps_start)?;
+            self.parts.parts.push(PartSource {
+                factors: factors_start..self.parts.factors.len(),
+                steps: steps_start..self.parts.steps.len(),
+                model,
+            });
         }
+        let nothing = Sources::new(&[], &[]);
+        let opacity = ScalarInput::Constant(1.0);
+        self.sides.push(Side {
+            kind: 0,
+            sources: nothing,
+            opacity,
+            constant: constants(&nothing, opacity).0,
+            parts: first..self.parts.parts.len(),
+            has_holes: side.has_holes,
+            is_textured: false,
+            needs_tangents,
+        });
+        let side = self.sides.len() as u32 - 1;
+        Ok(Face { side, queue: Queue::SINGLE, turn: 1.0, albedo: Rgb::ZERO, has_picture: false })
     }
 
-    /// The tables of a rough coating, shared by all materials with the same one.
-    fn coat(&mut self, kind: MicrofacetKind, alpha: f32, eta: f32) -> u32 {
-        let wanted = Microfacet::isotropic(kind, alpha);
-        let known = self.coats.iter().position(|c| *c.distribution() == wanted && c.eta() == eta);
-        known.unwrap_or_else(|| {
-            self.coats.push(RoughPlasticTables::new(kind, alpha, eta));
-            self.coats.len() - 1
-        }) as u32
+    fn flatten(&mut self, descs: &[MaterialDesc], MaterialId(id): MaterialId) -> Material {
+        match descs[id as usize] {
+            MaterialDesc::TwoSided { front, back } => {
+                let (front, back) = (self.flatten(descs, front), self.flatten(descs, back));
+                let mut back = back.front;
+                back.parts.iter_mut().for_each(|part| part.is_mirrored = true);
+                Material { front: front.front, back: Some(back) }
+            }
+            MaterialDesc::Mask { opacity, inner } => self.flatten(descs, inner).with_sides(|side| {
+                let factor = Factor { weight: opacity, is_rest: false };
+                *side = Unfinished { has_holes: true, ..std::mem::take(side).times(factor) };
+            }),
+            MaterialDesc::Blend { weight, materials } => {
+                let [first, second] = materials.map(|id| self.flatten(descs, id));
+                let blend = |first: Unfinished, second: Unfinished| {
+                    let second = second.times(Factor { weight, is_rest: false });
+                    first.times(Factor { weight, is_rest: true }).and(second)
+                };
+                let has_back = first.back.is_some() || second.back.is_some();
+                let back_of = |m: &Material| m.back.clone().unwrap_or_else(|| m.front.clone());
+                let back = has_back.then(|| blend(back_of(&first), back_of(&second)));
+                Material { front: blend(first.front, second.front), back }
+            }
+            MaterialDesc::BumpMap { scale, texture, tilting, inner } => {
+                let normal = NormalSource::Bump { scale, texture };
+                self.flatten(descs, inner).tilted(TiltSource { normal, tilting, is_mirrored: false })
+            }
+            MaterialDesc::NormalMap { normal, tilting, inner } => {
+                let normal = NormalSource::Map(normal);
+                self.flatten(descs, inner).tilted(TiltSource { normal, tilting, is_mirrored: false })
+            }
+            ref plain => self.model_source(plain).into(),
+        }
     }
 }
 
-/// Reflectance, η and k.
-fn metal_colors(reflectance: ColorInput, eta_k: Option<(ColorInput, ColorInput)>) -> [ColorInput; COLORS] {
-    let (eta, k) = eta_k.unwrap_or((ColorInput::Constant(Rgb::ZERO), ColorInput::Constant(Rgb::ZERO)));
-    [reflectance, eta, k]
+/// The inputs, those that are textured being 0, and whether there are such.
+fn constants(sources: &Sources, opacity: ScalarInput) -> (Inputs, bool) {
+    let color = |color| match color {
+        ColorInput::Constant(color) => Some(color),
+        ColorInput::Texture(_) => None,
+    };
+    let scalar = |scalar| match scalar {
+        ScalarInput::Constant(scalar) => Some(scalar),
+        ScalarInput::Texture(_) => None,
+    };
+    let (colors, scalars, opacity) =
+        (sources.colors.map(color), sources.scalars.map(scalar), scalar(opacity));
+    let is_textured = colors.contains(&None) || scalars.contains(&None) || opacity.is_none();
+    let constant = Inputs {
+        colors: colors.map(Option::unwrap_or_default),
+        scalars: scalars.map(Option::unwrap_or_default),
+        opacity: opacity.unwrap_or_default(),
+    };
+    (constant, is_textured)
+}
+
+fn is_anisotropic(kinds: &[Kind], kind: u32, sources: &Sources) -> bool {
+    let is_rough = matches!(kinds[kind as usize], Kind::RoughConductor { .. } | Kind::RoughDielectric { .. });
+    is_rough && sources.scalars[0] != sources.scalars[1]
+}
+
+fn is_anisotropic_model(kinds: &[Kind], model: &ModelSource) -> bool {
+    match model {
+        ModelSource::Common { kind, sources } => is_anisotropic(kinds, *kind, sources),
+        ModelSource::Uncommon(uncommon) => uncommon.is_anisotropic(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HALF: ScalarInput = ScalarInput::Constant(0.5);
+
+    fn white() -> MaterialDesc {
+        MaterialDesc::Diffuse { reflectance: ColorInput::Constant(Rgb::ONE) }
+    }
+
+    fn twosided(id: u32) -> MaterialDesc {
+        MaterialDesc::TwoSided { front: MaterialId(id), back: MaterialId(id) }
+    }
+
+    #[test]
+    fn what_is_common_has_no_parts() {
+        let mask = MaterialDesc::Mask { opacity: HALF, inner: MaterialId(0) };
+        let all = Materials::new(&[white(), twosided(0), mask, twosided(1)]).unwrap();
+        assert!(all.sides.iter().all(|side| side.parts.is_empty()));
+        let [front, back] = all.faces[3];
+        assert_eq!((front.queue, back.queue), (Queue::LAMBERT, Queue::LAMBERT));
+        assert_eq!((front.turn, back.turn), (1.0, -1.0));
+    }
+
+    #[test]
+    fn masks_in_masks_multiply() {
+        let mask = |inner| MaterialDesc::Mask { opacity: HALF, inner: MaterialId(inner) };
+        let all = Materials::new(&[white(), mask(0), mask(1)]).unwrap();
+        let side = all.side(all.faces[2][0].side);
+        assert!(side.has_holes && side.parts.len() == 1);
+        assert_eq!(all.parts.parts[side.parts.start].factors.len(), 2);
+    }
+
+    /// Behind, one part is mirrored and the other is as it is.
+    #[test]
+    fn a_blend_of_one_side_and_two() {
+        let blend = MaterialDesc::Blend { weight: HALF, materials: [MaterialId(0), MaterialId(1)] };
+        let all = Materials::new(&[white(), twosided(0), blend]).unwrap();
+        let [front, back] = all.faces[2];
+        assert_eq!((front.turn, back.turn), (1.0, 1.0));
+        let steps = |face: Face| {
+            all.parts.parts[all.side(face.side).parts.clone()]
+                .iter()
+                .map(|p| p.steps.len())
+                .collect::<Vec<_>>()
+        };
+        assert_eq!((steps(front), steps(back)), (vec![0, 0], vec![0, 1]));
+    }
+
+    #[test]
+    fn there_is_an_end_to_nesting() {
+        let mut descs = vec![white()];
+        for id in 0..4 {
+            descs.push(MaterialDesc::Blend { weight: HALF, materials: [MaterialId(id), MaterialId(id)] });
+        }
+        assert!(matches!(Materials::new(&descs), Err(MaterialError::TooMany { material: 4, count: 16, .. })));
+    }
 }

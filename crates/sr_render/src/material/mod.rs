@@ -2,18 +2,29 @@
 //!
 //! In: descriptions. Out, per hit: the side that is seen, and an [`AnyBsdf`] by value, its textures looked up; or, for
 //! whoever serves many hits at a time, the queue of each, and what `kind` makes of those in it. No ray, no light.
+//!
+//! There are two tiers. Common kinds (`kind`) have a loop of their own, compiled for each instruction set, and few inputs.
+//! Everything else (`parts`: uncommon models, blends, tilted normals, holes in holes) is made and asked one by one.
 
 mod flatten;
 mod kind;
+mod model;
+mod parts;
+mod uncommon;
+
+use std::ops::Range;
 
 use glam::Vec2;
 use sr_bsdf::{AnyBsdf, AnyModel, Mask, RoughPlasticTables};
-use sr_scene::{ColorInput, MaterialId, Rgb, ScalarInput, TextureId};
+use sr_scene::{ColorInput, MaterialId, Rgb, ScalarInput};
 
 use crate::texture::Textures;
 pub use flatten::MaterialError;
 use kind::Kind;
 pub(crate) use kind::{COLORS, Inputs, Recipe, RecipeUser, SCALARS};
+use parts::Parts;
+pub(crate) use parts::Place;
+use uncommon::Tables;
 
 /// All materials of a scene.
 #[derive(Clone, Debug)]
@@ -23,6 +34,8 @@ pub struct Materials {
     sides: Vec<Side>,
     kinds: Vec<Kind>,
     coats: Vec<RoughPlasticTables>,
+    parts: Parts,
+    tables: Tables,
 }
 
 /// A material as it is seen from the front or from behind: what is asked of every hit.
@@ -38,28 +51,29 @@ pub(crate) struct Face {
     pub has_picture: bool,
 }
 
-/// One side of a surface.
+/// One side of a surface: a model of a common kind, perhaps with holes, or parts.
 #[derive(Clone, Debug)]
 pub(crate) struct Side {
     kind: u32,
-    colors: [ColorInput; COLORS],
-    scalars: [ScalarInput; SCALARS],
+    sources: Sources,
     opacity: ScalarInput,
     /// All of them, if none is textured.
     constant: Inputs,
-    pub bump: Option<Bump>,
-    /// Does a colour or number depend on texture coordinates?
+    /// Which parts it has; empty if it is one model of a common kind.
+    parts: Range<usize>,
+    /// Do the parts leave holes?
+    has_holes: bool,
+    /// Does a colour or number of a model of a common kind depend on texture coordinates?
     pub is_textured: bool,
-    /// Does the model tell the tangent from the bitangent?
-    pub is_anisotropic: bool,
+    /// Does a model or a tilt tell the tangent from the bitangent?
+    pub needs_tangents: bool,
 }
 
-/// A tilt of the shading normal.
+/// Where the colours and numbers of a model of a common kind come from.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Bump {
-    /// Displacement in scene units per unit of texture value.
-    pub scale: f32,
-    pub texture: TextureId,
+struct Sources {
+    colors: [ColorInput; COLORS],
+    scalars: [ScalarInput; SCALARS],
 }
 
 /// Which loop serves a side.
@@ -69,7 +83,7 @@ pub(crate) struct Queue(pub u32);
 impl Queue {
     /// Lambertian, without holes or bumps.
     pub const LAMBERT: Self = Self(0);
-    /// One by one: bumps, tangents that matter, and kinds beyond [`Queue::COUNT`].
+    /// One by one: parts, tangents that matter, and kinds beyond [`Queue::COUNT`].
     pub const SINGLE: Self = Self(1);
     /// How many there are at most; those above the first two are a kind each.
     pub const COUNT: usize = 64;
@@ -103,10 +117,13 @@ impl Materials {
         (self.kinds.len() + 2).min(Queue::COUNT)
     }
 
-    /// The scattering model of one side at a surface coordinate.
+    /// The scattering model of one side.
     #[inline]
-    pub(crate) fn bsdf(&self, side: &Side, uv: Vec2, textures: &Textures) -> AnyBsdf<'_> {
-        let inputs = side.inputs(uv, textures);
+    pub(crate) fn bsdf(&self, side: &Side, place: &Place) -> AnyBsdf<'_> {
+        if !side.parts.is_empty() {
+            return self.blend(side, place);
+        }
+        let inputs = side.inputs(place.uv, place.textures);
         let model = self.with_recipe(side.kind, MakeAny { inputs });
         match inputs.opacity {
             1.0 => AnyBsdf::Solid(model),
@@ -133,21 +150,23 @@ impl Side {
     /// The colours and numbers of the model at a surface coordinate. Those that it does not take are 0.
     #[inline(always)]
     pub(crate) fn inputs(&self, uv: Vec2, textures: &Textures) -> Inputs {
-        if self.is_textured { self.look_up(uv, textures) } else { self.constant }
-    }
-
-    #[inline(never)]
-    fn look_up(&self, uv: Vec2, textures: &Textures) -> Inputs {
-        Inputs {
-            colors: self.colors.map(|color| textures.color(color, uv)),
-            scalars: self.scalars.map(|scalar| textures.scalar(scalar, uv)),
-            opacity: textures.scalar(self.opacity, uv),
-        }
+        if self.is_textured { self.sources.look_up(self.opacity, uv, textures) } else { self.constant }
     }
 
     /// The reflectance of a side of [`Queue::LAMBERT`].
     #[inline(always)]
     pub(crate) fn reflectance(&self, uv: Vec2, textures: &Textures) -> Rgb {
-        textures.color(self.colors[0], uv)
+        textures.color(self.sources.colors[0], uv)
+    }
+}
+
+impl Sources {
+    #[inline(never)]
+    fn look_up(&self, opacity: ScalarInput, uv: Vec2, textures: &Textures) -> Inputs {
+        Inputs {
+            colors: self.colors.map(|color| textures.color(color, uv)),
+            scalars: self.scalars.map(|scalar| textures.scalar(scalar, uv)),
+            opacity: textures.scalar(opacity, uv),
+        }
     }
 }

@@ -36,9 +36,12 @@ impl Check<'_> {
                 }
                 true
             }
-            MaterialDesc::Mask { inner, .. } | MaterialDesc::BumpMap { inner, .. } => {
-                self.nesting(inner, span, depth + 1)
+            MaterialDesc::Blend { materials, .. } => {
+                materials.into_iter().all(|inner| self.nesting(inner, span, depth + 1))
             }
+            MaterialDesc::Mask { inner, .. }
+            | MaterialDesc::BumpMap { inner, .. }
+            | MaterialDesc::NormalMap { inner, .. } => self.nesting(inner, span, depth + 1),
             _ => true,
         }
     }
@@ -49,9 +52,17 @@ impl Check<'_> {
                 MaterialDesc::Dielectric { .. }
                 | MaterialDesc::ThinDielectric { .. }
                 | MaterialDesc::RoughDielectric { .. }
+                | MaterialDesc::DiffuseTransmission { .. }
+                | MaterialDesc::PrincipledThin(_)
                 | MaterialDesc::Mask { .. },
             ) => true,
-            Some(MaterialDesc::BumpMap { inner, .. }) => self.transmits(*inner),
+            Some(MaterialDesc::Principled(p)) => p.spec_trans != ScalarInput::Constant(0.0),
+            Some(MaterialDesc::BumpMap { inner, .. } | MaterialDesc::NormalMap { inner, .. }) => {
+                self.transmits(*inner)
+            }
+            Some(MaterialDesc::Blend { materials, .. }) => {
+                materials.iter().any(|inner| self.transmits(*inner))
+            }
             _ => false,
         }
     }
@@ -70,8 +81,10 @@ impl Check<'_> {
                 eta,
                 specular_reflectance,
                 specular_transmittance,
+                multiscatter,
                 ..
             } => {
+                self.multiscatter(*multiscatter, alpha, span);
                 alpha.iter().for_each(|a| self.alpha(a, span));
                 self.eta(*eta, span);
                 self.albedo(specular_reflectance, "specular_reflectance", span);
@@ -81,7 +94,8 @@ impl Check<'_> {
                 self.complex_index(eta_k, span);
                 self.albedo(specular_reflectance, "specular_reflectance", span);
             }
-            MaterialDesc::RoughConductor { alpha, eta_k, specular_reflectance, .. } => {
+            MaterialDesc::RoughConductor { alpha, eta_k, specular_reflectance, multiscatter, .. } => {
+                self.multiscatter(*multiscatter, alpha, span);
                 alpha.iter().for_each(|a| self.alpha(a, span));
                 self.complex_index(eta_k, span);
                 self.albedo(specular_reflectance, "specular_reflectance", span);
@@ -97,18 +111,37 @@ impl Check<'_> {
                 self.albedo(diffuse_reflectance, "diffuse_reflectance", span);
                 self.albedo(specular_reflectance, "specular_reflectance", span);
             }
-            MaterialDesc::TwoSided { .. } => {}
-            MaterialDesc::Mask { opacity, .. } => match *opacity {
-                ScalarInput::Constant(value) if !(0.0..=1.0).contains(&value) => {
-                    self.error(
-                        "scene::opacity",
-                        span,
-                        format!("an opacity of {value} is not between 0 and 1"),
-                    );
+            MaterialDesc::Eon { reflectance, roughness } => {
+                self.albedo(reflectance, "reflectance", span);
+                self.within(roughness, "roughness", 1.0, span);
+            }
+            MaterialDesc::OrenNayar { reflectance, sigma } => {
+                self.albedo(reflectance, "reflectance", span);
+                self.within(sigma, "sigma", std::f32::consts::FRAC_PI_2, span);
+            }
+            MaterialDesc::DiffuseTransmission { reflectance, transmittance } => {
+                self.albedo(reflectance, "reflectance", span);
+                self.albedo(transmittance, "transmittance", span);
+            }
+            MaterialDesc::CoatedConductor { coat_alpha, eta, alpha, eta_k, specular_reflectance, .. } => {
+                if *coat_alpha != 0.0 {
+                    self.alpha(&ScalarInput::Constant(*coat_alpha), span);
                 }
-                ScalarInput::Constant(_) => {}
-                ScalarInput::Texture(id) => self.texture_id(id, span),
-            },
+                self.alpha(&ScalarInput::Constant(*alpha), span);
+                if !(*eta >= 1.0 && eta.is_finite()) {
+                    let message =
+                        format!("a relative index of refraction of {eta} of a coat is not at least 1");
+                    self.error("scene::index", span, message);
+                }
+                self.complex_index(eta_k, span);
+                self.albedo(specular_reflectance, "specular_reflectance", span);
+            }
+            MaterialDesc::Principled(principled) => self.principled(principled, span),
+            MaterialDesc::PrincipledThin(thin) => self.principled_thin(thin, span),
+            MaterialDesc::TwoSided { .. } => {}
+            MaterialDesc::Mask { opacity, .. } => self.share(opacity, "scene::opacity", "an opacity", span),
+            MaterialDesc::Blend { weight, .. } => self.share(weight, "scene::blend-weight", "a weight", span),
+            MaterialDesc::NormalMap { normal, .. } => self.color_input(normal, "normalmap", span),
             MaterialDesc::BumpMap { scale, texture, .. } => {
                 self.texture_id(*texture, span);
                 if !scale.is_finite() {
@@ -118,7 +151,18 @@ impl Check<'_> {
         }
     }
 
-    fn albedo(&mut self, input: &ColorInput, what: &str, span: &Span) {
+    /// A number between 0 and 1.
+    fn share(&mut self, input: &ScalarInput, code: &'static str, what: &str, span: &Span) {
+        match *input {
+            ScalarInput::Constant(value) if !(0.0..=1.0).contains(&value) => {
+                self.error(code, span, format!("{what} of {value} is not between 0 and 1"));
+            }
+            ScalarInput::Constant(_) => {}
+            ScalarInput::Texture(id) => self.texture_id(id, span),
+        }
+    }
+
+    pub(super) fn albedo(&mut self, input: &ColorInput, what: &str, span: &Span) {
         self.color_input(input, what, span);
         if let ColorInput::Constant(color) = *input
             && color.max_element() > 1.0
@@ -143,12 +187,24 @@ impl Check<'_> {
         }
     }
 
-    fn eta(&mut self, eta: f32, span: &Span) {
+    pub(super) fn eta(&mut self, eta: f32, span: &Span) {
         if !(eta > 0.0 && eta.is_finite()) {
             self.error(
                 "scene::index",
                 span,
                 format!("a relative index of refraction of {eta} is not positive"),
+            );
+        }
+    }
+
+    /// Light that bounces between facets is tabulated, for one roughness.
+    fn multiscatter(&mut self, is_wanted: bool, alpha: &[ScalarInput; 2], span: &Span) {
+        let is_possible = matches!(alpha, [ScalarInput::Constant(x), ScalarInput::Constant(y)] if x == y);
+        if is_wanted && !is_possible {
+            let message = "multiscatter needs a roughness that is constant and the same in all directions";
+            self.found.push(
+                Diagnostic::warning("scene::multiscatter", span, message)
+                    .consequence("light that bounces between facets is lost"),
             );
         }
     }

@@ -6,6 +6,7 @@
 mod camera;
 mod light;
 mod material;
+mod principled;
 mod shape;
 
 use crate::diagnostic::{Diagnostic, Span};

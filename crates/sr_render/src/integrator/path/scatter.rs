@@ -130,8 +130,7 @@ fn visit<Q: Sequence>(
 ) {
     let (hit, ray) = (at.hits.at(i), paths.rays.get(i));
     let surface = at.surfaces.get(i, scene.geometry.uv(&ray, &hit));
-    let (sight, side) = Sight::new(scene, &ray, &hit, &surface);
-    let bsdf = scene.materials.bsdf(side, surface.uv, &scene.textures);
+    let (sight, bsdf) = Sight::with_model(scene, &ray, &hit, &surface);
     let vertex = Vertex { surface: &surface, sight: &sight, bsdf: &bsdf };
     if step.first {
         samples[paths.slot[i] as usize % BATCH].first = Some(FirstHit::new(&vertex, hit.t));

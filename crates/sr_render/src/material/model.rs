@@ -1,0 +1,156 @@
+//! Descriptions of single models to what they are made from; tables are made here, once for all who share them.
+
+use sr_bsdf::{CoatedConductorTables, Microfacet, MicrofacetKind, RoughPlasticTables, SmoothCoat};
+use sr_scene::{ColorInput, MaterialDesc, Rgb, ScalarInput};
+
+use super::kind::{COLORS, Kind, SCALARS};
+use super::parts::ModelSource;
+use super::uncommon::Uncommon;
+use super::{Materials, Sources};
+
+impl Sources {
+    /// Those beyond what is given are 0.
+    pub(super) fn new(colors: &[ColorInput], scalars: &[ScalarInput]) -> Self {
+        let mut sources = Self {
+            colors: [ColorInput::Constant(Rgb::ZERO); COLORS],
+            scalars: [ScalarInput::Constant(0.0); SCALARS],
+        };
+        sources.colors[..colors.len()].copy_from_slice(colors);
+        sources.scalars[..scalars.len()].copy_from_slice(scalars);
+        sources
+    }
+}
+
+impl Materials {
+    /// What a description that nests nothing is made from.
+    pub(super) fn model_source(&mut self, desc: &MaterialDesc) -> ModelSource {
+        match *desc {
+            MaterialDesc::Diffuse { reflectance } => self.common(Kind::Diffuse, &[reflectance], &[]),
+            MaterialDesc::Dielectric { eta, specular_reflectance: r, specular_transmittance: t } => {
+                self.common(Kind::Dielectric, &[r, t], &[ScalarInput::Constant(eta)])
+            }
+            MaterialDesc::ThinDielectric { eta, specular_reflectance: r, specular_transmittance: t } => {
+                self.common(Kind::ThinDielectric, &[r, t], &[ScalarInput::Constant(eta)])
+            }
+            MaterialDesc::RoughDielectric {
+                kind,
+                alpha: [ScalarInput::Constant(x), ScalarInput::Constant(y)],
+                eta,
+                specular_reflectance: reflectance,
+                specular_transmittance: transmittance,
+                multiscatter: true,
+            } if x == y => {
+                let tables = self.tables.glass(microfacet_kind(kind), x, eta);
+                Uncommon::CompensatedDielectric { tables, reflectance, transmittance }.into()
+            }
+            MaterialDesc::RoughDielectric {
+                kind,
+                alpha: [x, y],
+                eta,
+                specular_reflectance: r,
+                specular_transmittance: t,
+                multiscatter: _,
+            } => {
+                let kind = Kind::RoughDielectric { shape: microfacet_kind(kind) };
+                self.common(kind, &[r, t], &[x, y, ScalarInput::Constant(eta)])
+            }
+            MaterialDesc::Conductor { eta_k, specular_reflectance: r } => {
+                let kind = Kind::Conductor { has_index: eta_k.is_some() };
+                self.common(kind, &metal_colors(r, eta_k), &[])
+            }
+            MaterialDesc::RoughConductor {
+                kind,
+                alpha: [ScalarInput::Constant(x), ScalarInput::Constant(y)],
+                eta_k,
+                specular_reflectance: reflectance,
+                multiscatter: true,
+            } if x == y => {
+                let table = self.tables.metal(microfacet_kind(kind), x);
+                Uncommon::CompensatedConductor { table, eta_k, reflectance }.into()
+            }
+            MaterialDesc::RoughConductor { kind, alpha, eta_k, specular_reflectance: r, multiscatter: _ } => {
+                let (shape, has_index) = (microfacet_kind(kind), eta_k.is_some());
+                self.common(Kind::RoughConductor { shape, has_index }, &metal_colors(r, eta_k), &alpha)
+            }
+            MaterialDesc::Plastic { eta, diffuse_reflectance: d, specular_reflectance: s, nonlinear } => {
+                self.common(Kind::Plastic { coat: SmoothCoat::new(eta), nonlinear }, &[d, s], &[])
+            }
+            MaterialDesc::RoughPlastic {
+                kind,
+                alpha,
+                eta,
+                diffuse_reflectance: d,
+                specular_reflectance: s,
+                nonlinear,
+                multiscatter,
+            } => {
+                let coat = self.coat(microfacet_kind(kind), alpha, eta, multiscatter);
+                self.common(Kind::RoughPlastic { coat, nonlinear }, &[d, s], &[])
+            }
+            MaterialDesc::Eon { reflectance, roughness } => Uncommon::Eon { reflectance, roughness }.into(),
+            MaterialDesc::OrenNayar { reflectance, sigma } => {
+                Uncommon::OrenNayar { reflectance, sigma }.into()
+            }
+            MaterialDesc::DiffuseTransmission { reflectance, transmittance } => {
+                Uncommon::DiffuseTransmission { reflectance, transmittance }.into()
+            }
+            MaterialDesc::CoatedConductor {
+                kind,
+                coat_alpha,
+                eta,
+                alpha,
+                eta_k,
+                specular_reflectance: reflectance,
+            } => {
+                let kind = microfacet_kind(kind);
+                self.tables.coated.push(CoatedConductorTables::new(kind, coat_alpha, eta, alpha));
+                let tables = self.tables.coated.len() - 1;
+                Uncommon::CoatedConductor { tables, eta_k, reflectance }.into()
+            }
+            MaterialDesc::Principled(principled) => Uncommon::Principled(principled).into(),
+            MaterialDesc::PrincipledThin(thin) => Uncommon::PrincipledThin(thin).into(),
+            MaterialDesc::TwoSided { .. }
+            | MaterialDesc::Mask { .. }
+            | MaterialDesc::Blend { .. }
+            | MaterialDesc::BumpMap { .. }
+            | MaterialDesc::NormalMap { .. } => unreachable!("flatten handles what nests"),
+        }
+    }
+
+    /// A model of a common kind.
+    fn common(&mut self, kind: Kind, colors: &[ColorInput], scalars: &[ScalarInput]) -> ModelSource {
+        let known = self.kinds.iter().position(|&k| k == kind);
+        let number = known.unwrap_or_else(|| {
+            self.kinds.push(kind);
+            self.kinds.len() - 1
+        });
+        ModelSource::Common { kind: number as u32, sources: Sources::new(colors, scalars) }
+    }
+
+    /// The tables of a rough coating, shared by all materials with the same one.
+    fn coat(&mut self, kind: MicrofacetKind, alpha: f32, eta: f32, is_lossless: bool) -> u32 {
+        let wanted = Microfacet::isotropic(kind, alpha);
+        let is_it = |coat: &RoughPlasticTables| {
+            coat.is_lossless() == is_lossless && *coat.distribution() == wanted && coat.eta() == eta
+        };
+        let known = self.coats.iter().position(is_it);
+        known.unwrap_or_else(|| {
+            let new = if is_lossless { RoughPlasticTables::lossless } else { RoughPlasticTables::new };
+            self.coats.push(new(kind, alpha, eta));
+            self.coats.len() - 1
+        }) as u32
+    }
+}
+
+/// Reflectance, η and k.
+fn metal_colors(reflectance: ColorInput, eta_k: Option<(ColorInput, ColorInput)>) -> [ColorInput; COLORS] {
+    let (eta, k) = eta_k.unwrap_or((ColorInput::Constant(Rgb::ZERO), ColorInput::Constant(Rgb::ZERO)));
+    [reflectance, eta, k]
+}
+
+fn microfacet_kind(kind: sr_scene::MicrofacetKind) -> MicrofacetKind {
+    match kind {
+        sr_scene::MicrofacetKind::Beckmann => MicrofacetKind::Beckmann,
+        sr_scene::MicrofacetKind::Ggx => MicrofacetKind::Ggx,
+    }
+}

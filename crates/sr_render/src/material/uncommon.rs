@@ -1,0 +1,152 @@
+//! Models without a loop of their own: what each is made from, which may be many numbers, and how.
+
+use sr_bsdf::{
+    AlbedoTable, AnyModel, CoatedConductor, CoatedConductorTables, CompensatedConductor,
+    CompensatedDielectric, DielectricTables, DiffuseTransmission, Eon, Microfacet, MicrofacetKind, OrenNayar,
+    Principled, PrincipledInputs, PrincipledThin, PrincipledThinInputs, Rgb,
+};
+use sr_scene::{ColorInput, PrincipledDesc, PrincipledThinDesc, ScalarInput};
+
+use super::parts::{ModelSource, Place};
+
+/// What an uncommon model is made from.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Uncommon {
+    Eon {
+        reflectance: ColorInput,
+        roughness: ScalarInput,
+    },
+    OrenNayar {
+        reflectance: ColorInput,
+        sigma: ScalarInput,
+    },
+    DiffuseTransmission {
+        reflectance: ColorInput,
+        transmittance: ColorInput,
+    },
+    /// `table`: into [`Tables::metals`].
+    CompensatedConductor {
+        table: usize,
+        eta_k: Option<(ColorInput, ColorInput)>,
+        reflectance: ColorInput,
+    },
+    /// `tables`: into [`Tables::glasses`].
+    CompensatedDielectric {
+        tables: usize,
+        reflectance: ColorInput,
+        transmittance: ColorInput,
+    },
+    /// `tables`: into [`Tables::coated`].
+    CoatedConductor {
+        tables: usize,
+        eta_k: Option<(ColorInput, ColorInput)>,
+        reflectance: ColorInput,
+    },
+    Principled(PrincipledDesc),
+    PrincipledThin(PrincipledThinDesc),
+}
+
+/// What is the same at every point of uncommon models, shared by all that have the same.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Tables {
+    pub metals: Vec<(Microfacet, AlbedoTable)>,
+    pub glasses: Vec<DielectricTables>,
+    pub coated: Vec<CoatedConductorTables>,
+}
+
+impl Tables {
+    pub fn metal(&mut self, kind: MicrofacetKind, alpha: f32) -> usize {
+        let wanted = Microfacet::isotropic(kind, alpha);
+        let make = || (wanted, CompensatedConductor::table(kind, alpha));
+        find_or_push(&mut self.metals, |(known, _)| *known == wanted, make)
+    }
+
+    pub fn glass(&mut self, kind: MicrofacetKind, alpha: f32, eta: f32) -> usize {
+        let wanted = Microfacet::isotropic(kind, alpha);
+        let is_known = |t: &DielectricTables| *t.distribution() == wanted && t.eta() == eta;
+        find_or_push(&mut self.glasses, is_known, || DielectricTables::new(kind, alpha, eta))
+    }
+}
+
+fn find_or_push<T>(all: &mut Vec<T>, is_it: impl Fn(&T) -> bool, make: impl FnOnce() -> T) -> usize {
+    all.iter().position(is_it).unwrap_or_else(|| {
+        all.push(make());
+        all.len() - 1
+    })
+}
+
+impl From<Uncommon> for ModelSource {
+    fn from(uncommon: Uncommon) -> Self {
+        ModelSource::Uncommon(uncommon)
+    }
+}
+
+impl Uncommon {
+    /// Does it tell the tangent from the bitangent?
+    pub fn is_anisotropic(&self) -> bool {
+        match self {
+            Uncommon::Principled(p) => p.anisotropic != ScalarInput::Constant(0.0),
+            Uncommon::PrincipledThin(p) => p.anisotropic != ScalarInput::Constant(0.0),
+            _ => false,
+        }
+    }
+
+    /// The model at a place.
+    pub fn model<'a>(&self, at: &Place, all: &'a Tables) -> AnyModel<'a> {
+        let index = |eta_k: Option<(ColorInput, ColorInput)>| -> Option<(Rgb, Rgb)> {
+            eta_k.map(|(eta, k)| (at.color(eta), at.color(k)))
+        };
+        match *self {
+            Uncommon::Eon { reflectance, roughness } => {
+                Eon::new(at.color(reflectance), at.scalar(roughness)).into()
+            }
+            Uncommon::OrenNayar { reflectance, sigma } => {
+                OrenNayar::new(at.color(reflectance), at.scalar(sigma)).into()
+            }
+            Uncommon::DiffuseTransmission { reflectance, transmittance } => {
+                DiffuseTransmission::new(at.color(reflectance), at.color(transmittance)).into()
+            }
+            Uncommon::CompensatedConductor { table, eta_k, reflectance } => {
+                let (distribution, table) = &all.metals[table];
+                CompensatedConductor::new(*distribution, table, index(eta_k), at.color(reflectance)).into()
+            }
+            Uncommon::CompensatedDielectric { tables, reflectance, transmittance } => {
+                let (reflectance, transmittance) = (at.color(reflectance), at.color(transmittance));
+                CompensatedDielectric::new(&all.glasses[tables], reflectance, transmittance).into()
+            }
+            Uncommon::CoatedConductor { tables, eta_k, reflectance } => {
+                CoatedConductor::new(&all.coated[tables], index(eta_k), at.color(reflectance)).into()
+            }
+            Uncommon::Principled(ref p) => Principled::new(PrincipledInputs {
+                base_color: at.color(p.base_color),
+                roughness: at.scalar(p.roughness),
+                anisotropic: at.scalar(p.anisotropic),
+                metallic: at.scalar(p.metallic),
+                spec_trans: at.scalar(p.spec_trans),
+                eta: p.eta,
+                spec_tint: at.scalar(p.spec_tint),
+                sheen: at.scalar(p.sheen),
+                sheen_tint: at.scalar(p.sheen_tint),
+                flatness: at.scalar(p.flatness),
+                clearcoat: at.scalar(p.clearcoat),
+                clearcoat_gloss: at.scalar(p.clearcoat_gloss),
+                rates: p.rates,
+            })
+            .into(),
+            Uncommon::PrincipledThin(ref p) => PrincipledThin::new(PrincipledThinInputs {
+                base_color: at.color(p.base_color),
+                roughness: at.scalar(p.roughness),
+                anisotropic: at.scalar(p.anisotropic),
+                spec_trans: at.scalar(p.spec_trans),
+                eta: at.scalar(p.eta),
+                spec_tint: at.scalar(p.spec_tint),
+                sheen: at.scalar(p.sheen),
+                sheen_tint: at.scalar(p.sheen_tint),
+                flatness: at.scalar(p.flatness),
+                diff_trans: at.scalar(p.diff_trans),
+                rates: p.rates,
+            })
+            .into(),
+        }
+    }
+}
