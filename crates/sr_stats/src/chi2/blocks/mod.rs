@@ -57,8 +57,10 @@ const PILOTS: usize = 1 << 13;
 const REFERENCES: usize = 1 << 5;
 /// A leaf may be halved this often …
 const MAX_HALVINGS: usize = 24;
-/// … while the density was not asked for more points than these.
+/// … while the density was not asked for more points than these …
 const MAX_EVALUATIONS: usize = 1 << 20;
+/// … nor more coordinates: of many axes halving one settles little.
+const MAX_COORDINATES: usize = 1 << 24;
 
 /// Tests a distribution over real coordinates. `settings.bins` multiply to the number of cells.
 ///
@@ -125,7 +127,8 @@ fn run<B: Blocks>(of: &mut B, domain: Domain, settings: Chi2Settings) -> Result<
     let mut tally = Tally::default();
     let mut pilots: Vec<Vec<f64>> = Vec::new();
     let dim = of.dim();
-    each_block(of, settings.seed ^ 0x5eed, PILOTS, &mut tally, |x, pdf| {
+    let first = Axes::samples(dim, PILOTS);
+    each_block(of, settings.seed ^ 0x5eed, first, &mut tally, |x, pdf| {
         let len = pdf.len();
         for i in (0..len).filter(|&i| pdf[i] != 0.0) {
             pilots.push(domain.coordinates(&(0..dim).map(|j| x[j * len + i]).collect::<Vec<_>>()));
@@ -135,12 +138,14 @@ fn run<B: Blocks>(of: &mut B, domain: Domain, settings: Chi2Settings) -> Result<
         return Ok(report);
     }
     if pilots.is_empty() {
-        return Ok(TestReport::impossible(format!("all of {PILOTS} samples are nothing")));
+        return Ok(TestReport::impossible(format!("all of {first} samples are nothing")));
     }
     let Some(axes) = Axes::of(&pilots, &domain.sides(&of.support())) else {
         let remark = "the samples have too few values: no evidence".into();
         return Ok(TestReport { statistic: f64::NAN, dof: 0.0, p_value: f64::NAN, remark });
     };
+    // More samples are for the axes alone.
+    pilots.truncate(pilots.len() * PILOTS / first);
     let mapped: Vec<Vec<f64>> = pilots.iter().filter_map(|at| axes.to_unit(at)).collect();
     let wanted = settings.bins.0.max(1) * settings.bins.1.max(1);
     let tree = Tree::new(mapped, wanted.min(PILOTS / 32));
@@ -183,7 +188,7 @@ fn expected<B: Blocks>(
     let (mut settled, mut evaluations) = (Vec::new(), 0);
     for _ in 0..MAX_HALVINGS {
         evaluations += unsettled.len() * REFERENCES;
-        if unsettled.is_empty() || evaluations > MAX_EVALUATIONS {
+        if unsettled.is_empty() || evaluations > MAX_EVALUATIONS.min(MAX_COORDINATES / of.dim()) {
             break;
         }
         let integrals = integrate(of, domain, axes, &unsettled, &mut random)?;

@@ -40,8 +40,11 @@ impl Leaf {
 
 /// A leaf has no more points than this.
 const LEAF: usize = 4;
-/// Empty space at one end of a leaf is cut off if it is more than this share of the side.
+/// Empty space at one end of a leaf is cut off if it is more than this share of the side …
 const EMPTY: f64 = 0.25;
+/// … and, of more than [`FEW_AXES`], if by chance so many sides of a leaf are as empty.
+const BY_CHANCE: f64 = 0.5;
+const FEW_AXES: usize = 6;
 
 enum Node {
     /// Below `at` along `axis` is the next node, the others are at `above`.
@@ -159,10 +162,16 @@ impl Tree {
 
 /// An axis and a number at which nothing but empty space is cut off.
 fn empty_space(points: &[Vec<f64>], sides: &[[f64; 2]]) -> Option<(usize, f64)> {
+    // The more sides, the emptier is the emptiest by chance: k points leave a share s of one empty with (1 − s)ᵏ.
+    let share = if sides.len() <= FEW_AXES {
+        EMPTY
+    } else {
+        EMPTY.max(1.0 - (0.5 * BY_CHANCE / sides.len() as f64).powf(1.0 / points.len().max(1) as f64))
+    };
     sides.iter().enumerate().find_map(|(axis, &[low, high])| {
         let along = || points.iter().map(|point| point[axis]);
         let (first, last) = (along().fold(high, f64::min), along().fold(low, f64::max));
-        let enough = EMPTY * (high - low);
+        let enough = share * (high - low);
         if first - low > enough {
             Some((axis, first))
         } else if high - last > enough && last.next_up() < high {
