@@ -159,6 +159,7 @@ class Integral:
     """An integral, or several, with what is known of their errors."""
 
     mean: list[float]
+    stderr: list[float]
     covariance: list[float]
     dof: int
     n: int
@@ -166,7 +167,11 @@ class Integral:
     not_drawn: int
     largest_share: float
     effective_n: float
+    tail_index: float | None
+    has_heavy_tail: bool
+    ended_by_cap: bool
     seconds: float
+    contradicted: tuple[int, float, float] | None
 
 def integrate(density: Density, f: object, request: Mapping[str, Any]) -> Integral:
     """``request``: the fields of ``Request`` in crates/sr_python/src/integrate/run.rs."""
@@ -221,9 +226,14 @@ def format_uncertain(mean: float, stderr: float) -> str:
     """``25.0013 ± 0.0046``."""
 
 def foreign_density(
-    object: object, space: str, dim: int, uniforms: int, support: Sequence[tuple[float, float]]
+    object: object,
+    name: str,
+    space: str,
+    dim: int,
+    uniforms: int,
+    support: Sequence[tuple[float, float]],
 ) -> Density:
-    """A density whose ``_sample_rows`` and ``_pdf_rows`` are Python's."""
+    """A density whose ``_sample_rows`` and ``_pdf_rows`` are Python's; ``name`` is for messages."""
 
 def uniform(low: float, high: float) -> Density: ...
 def uniform_box(sides: Sequence[tuple[float, float]]) -> Density: ...

@@ -8,6 +8,7 @@ use thiserror::Error;
 
 use crate::columns::{Columns, ColumnsMut};
 use crate::distributions::ParameterError;
+use crate::integrate::{number, point};
 use crate::space::Space;
 
 /// A density that could not do what it was asked for.
@@ -16,6 +17,37 @@ pub enum DensityError {
     /// A density that somebody else wrote failed; the error is theirs.
     #[error(transparent)]
     Foreign(Box<dyn Error + Send + Sync>),
+    /// Something that must be 0 or more, and finite, is not.
+    #[error("{what} is {} at x = {}; it must be finite and not negative", number(*value), point(x))]
+    Improper {
+        /// Whose value it is.
+        what: String,
+        /// The value.
+        value: f64,
+        /// Where.
+        x: Vec<f64>,
+    },
+}
+
+impl DensityError {
+    /// Checks values that come from elsewhere: each must be 0, or positive and finite.
+    ///
+    /// - `counts`: of which points; others may have any value
+    ///
+    /// # Errors
+    /// [`DensityError::Improper`] for the first that is not.
+    pub fn check(
+        what: &str,
+        values: &[f64],
+        x: Columns<'_>,
+        counts: impl Fn(usize) -> bool,
+    ) -> Result<(), Self> {
+        let wrong = |&(i, value): &(usize, &f64)| !(*value >= 0.0 && value.is_finite()) && counts(i);
+        match values.iter().enumerate().find(wrong) {
+            Some((i, &value)) => Err(Self::Improper { what: what.into(), value, x: x.point(i) }),
+            None => Ok(()),
+        }
+    }
 }
 
 /// A probability density over points of any number of coordinates, in double precision.
@@ -34,8 +66,9 @@ pub trait Density: Send + Sync + fmt::Debug {
     ///
     /// - `u`: [`Density::uniforms`] columns of uniforms in [0, 1)
     /// - `x`: the points; as many columns as the space has coordinates
-    /// - `pdf`: the density at each; 0 where nothing is drawn, which contributes nothing. Never NaN; the point
-    ///   may then be anything, also NaN
+    /// - `pdf`: the density at each, positive and finite, or 0 where nothing is drawn, which contributes nothing; the
+    ///   point may then be anything, also NaN. Whoever takes densities from elsewhere checks them
+    ///   ([`DensityError::check`]), so that all others may rely on it
     ///
     /// # Errors
     /// Only those of densities that somebody else wrote.

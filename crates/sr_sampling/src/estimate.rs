@@ -41,7 +41,14 @@ impl fmt::Display for Estimate {
 /// `25.0013 ± 0.0046`: the error with two digits, the mean with as many decimals.
 pub fn format_uncertain(mean: f64, stderr: f64) -> String {
     if !(stderr.is_finite() && stderr > 0.0) {
-        return format!("{mean} ± {stderr}");
+        let plain = |x: f64| {
+            if x == 0.0 || !x.is_finite() || (1e-5..1e16).contains(&x.abs()) {
+                format!("{x}")
+            } else {
+                format!("{x:e}")
+            }
+        };
+        return format!("{} ± {}", plain(mean), plain(stderr));
     }
     // Rounding to two digits may carry: 0.0996 is 0.10, so the digits are counted after it.
     let rounded: f64 = format!("{stderr:.1e}").parse().unwrap_or(stderr);

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import json
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
-from functools import cached_property
 from numbers import Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -14,11 +12,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from steradian import _internal
+from steradian.distributions.arguments import array, choice, short, whole
 
 if TYPE_CHECKING:
     from steradian.distributions.composite import Mixture, Product
 
 Array = NDArray[np.float64]
+
+SEQUENCES = ("independent", "stratified", "sobol", "lattice")
+"""The kinds of points."""
 
 
 class Samples(NamedTuple):
@@ -94,7 +96,14 @@ class Distribution(ABC):
         >>> sr.Uniform(2, 3).draw(1000).value.mean().round(1)
         np.float64(2.5)
         """
-        u = _internal.points(sequence, self.uniforms, n, seed, 0, 0)
+        u = _internal.points(
+            choice("sequence", sequence, SEQUENCES),
+            self.uniforms,
+            whole("n", n),
+            whole("seed", seed, 0, (1 << 64) - 1),
+            0,
+            0,
+        )
         return self.sample(u[:, 0] if self.uniforms == 1 else u)
 
     def to_dict(self) -> dict[str, Any]:
@@ -120,7 +129,7 @@ class Distribution(ABC):
         """Reads what :meth:`save` wrote. Raises ValueError that names the file if it is none."""
         try:
             return Distribution.from_dict(json.loads(Path(path).read_text(encoding="utf-8")))
-        except (ValueError, TypeError, KeyError, RecursionError) as error:
+        except (ValueError, TypeError, KeyError, OverflowError, AttributeError, RecursionError) as error:
             raise ValueError(f"{path} holds no distribution: {error}") from None
 
     @staticmethod
@@ -131,27 +140,31 @@ class Distribution(ABC):
             raise ValueError('a distribution is an object with its name as "type"')
         return value
 
-    def __mul__(self, other: Distribution | float) -> Product | WeightedSum:
+    def __mul__(self, other: Distribution | float) -> Product | Mixture:
         """``p * q`` is the product, of independent coordinates; ``p * 0.5`` a part of a mixture."""
-        from steradian.distributions.composite import Product
+        from steradian.distributions.composite import Product, mixed
 
         if isinstance(other, Distribution):
             return Product([self, other])
         if isinstance(other, Real):
-            return WeightedSum([(float(other), self)])
+            return mixed([self], [float(other)])
         return NotImplemented
 
-    def __rmul__(self, weight: float) -> WeightedSum:
+    def __rmul__(self, weight: float) -> Mixture:
         """``0.3 * p``: a part of a mixture, ``0.3 * p + 0.7 * q``."""
+        from steradian.distributions.composite import mixed
+
         if isinstance(weight, Real):
-            return WeightedSum([(float(weight), self)])
+            return mixed([self], [float(weight)])
         return NotImplemented
 
     @property
     def _core(self) -> _internal.Density:
         """The compiled density that this is."""
         support = [(float(low), float(high)) for low, high in np.asarray(self.support, float).reshape(-1, 2)]
-        return _internal.foreign_density(self, self.space or "", self.dim, self.uniforms, support)
+        return _internal.foreign_density(
+            self, type(self).__name__, self.space or "", self.dim, self.uniforms, support
+        )
 
     def _sample_rows(self, u: Array) -> tuple[Array, Array]:
         """What compiled code calls: ``sample`` of (n, uniforms), with its result checked."""
@@ -170,7 +183,7 @@ class Compiled(Distribution):
 
     def __init__(self, core: _internal.Density, **arguments: Any) -> None:
         self.__core = core
-        self._arguments = arguments
+        self._arguments = {name: _owned(value) for name, value in arguments.items()}
         self.dim = core.dim()
         self.uniforms = core.uniforms()
         self.space = core.space()
@@ -241,7 +254,7 @@ class Compiled(Distribution):
         return mean[0] if self.dim == 1 else np.array(mean)
 
     def __repr__(self) -> str:
-        arguments = ", ".join(f"{name}={_short(value)}" for name, value in self._arguments.items())
+        arguments = ", ".join(f"{name}={_written(value)}" for name, value in self._arguments.items())
         return f"{type(self).__name__}({arguments})"
 
     def to_dict(self) -> dict[str, Any]:
@@ -256,51 +269,6 @@ class Compiled(Distribution):
         return _remake, (type(self), self._arguments)
 
 
-class WeightedSum(Compiled):
-    """``0.3 * p + 0.7 * q``: a mixture, as soon as the weights sum to 1.
-
-    Until then, as ``0.3 * p``, it is on its way, and whatever is asked of it is a ValueError that says so.
-    """
-
-    def __init__(self, terms: Sequence[tuple[float, Distribution]]) -> None:
-        self._arguments = {"terms": tuple(terms)}
-        self.dim = terms[0][1].dim
-        self.space = terms[0][1].space
-        if self._is_complete():
-            self.uniforms = self._mixture.uniforms
-
-    @property
-    def _terms(self) -> tuple[tuple[float, Distribution], ...]:
-        terms: tuple[tuple[float, Distribution], ...] = self._arguments["terms"]
-        return terms
-
-    def _is_complete(self) -> bool:
-        return len(self._terms) > 1 and abs(sum(weight for weight, _ in self._terms) - 1) < 1e-9
-
-    @cached_property
-    def _mixture(self) -> Mixture:
-        from steradian.distributions.composite import Mixture
-
-        if not self._is_complete():
-            text = " + ".join(f"{weight} * {part!r}" for weight, part in self._terms)
-            total = sum(weight for weight, _ in self._terms)
-            raise ValueError(f"the weights of {text} sum to {total:g}, not to 1")
-        return Mixture([part for _, part in self._terms], [weight for weight, _ in self._terms])
-
-    @property
-    def _core(self) -> _internal.Density:
-        return self._mixture._core
-
-    def to_dict(self) -> dict[str, Any]:
-        """That of the mixture."""
-        return self._mixture.to_dict()
-
-    def __add__(self, other: WeightedSum) -> WeightedSum:
-        if not isinstance(other, WeightedSum):
-            return NotImplemented
-        return WeightedSum(self._terms + other._terms)
-
-
 def as_distribution(value: object, argument: str = "over") -> Distribution:
     """A distribution from one, or from a list of (low, high) for a box.
 
@@ -308,14 +276,21 @@ def as_distribution(value: object, argument: str = "over") -> Distribution:
     """
     from steradian.distributions.line import Uniform
 
-    if isinstance(value, WeightedSum):
-        return value._mixture
     if isinstance(value, Distribution):
+        core_of(argument, value)
         return value
     try:
         box = np.asarray(value, float)
     except (TypeError, ValueError):
         box = np.empty(0)
+    if box.shape == (2,):
+        box = box.reshape(1, 2)
+    if box.ndim == 2 and box.shape[1:] == (2,) and np.isinf(box).any() and not np.isnan(box).any():
+        j = int(np.argwhere(np.isinf(box).any(axis=1))[0, 0])
+        raise ValueError(
+            f"{argument}[{j}] is ({box[j, 0]:g}, {box[j, 1]:g}), and a box must be finite: over an infinite "
+            f"range integrate over a distribution that covers it, such as Exponential or Normal"
+        )
     if box.ndim != 2 or box.shape[1] != 2 or len(box) == 0:
         raise TypeError(
             f"{argument} must be a distribution, or (low, high) for each dimension, not {value!r}"
@@ -323,27 +298,40 @@ def as_distribution(value: object, argument: str = "over") -> Distribution:
     return Uniform(box[:, 0], box[:, 1]) if len(box) > 1 else Uniform(box[0, 0], box[0, 1])
 
 
+def core_of(argument: str, value: object) -> _internal.Density:
+    """The compiled density of a distribution. Raises TypeError naming ``argument`` if it is none."""
+    if not isinstance(value, Distribution):
+        raise TypeError(f"{argument} must be a distribution, not {short(value)}")
+    return value._core
+
+
 def as_rows(argument: str, value: ArrayLike, width: int) -> Array:
     """``value`` as (n, width) numbers; (n,) will do if ``width`` is 1. Raises ValueError that names it."""
-    array = np.asarray(value, float)
-    if array.ndim < 2 and width == 1:
-        array = array.reshape(-1, 1)
-    if array.ndim != 2 or array.shape[1] != width:
+    found = array(argument, value)
+    rows = found.reshape(-1, 1) if found.ndim < 2 and width == 1 else found
+    if rows.shape == (0,):
+        rows = rows.reshape(0, width)
+    if rows.ndim != 2 or rows.shape[1] != width:
         wanted = f"(n, {width})" if width > 1 else "(n,)"
-        raise ValueError(f"{argument} has shape {np.shape(value)}; it must be {wanted}")
-    return array
+        raise ValueError(f"{argument} has shape {found.shape}; it must be {wanted}")
+    return rows
 
 
 def _checked(what: str, value: object, n: int, width: int) -> Array:
     """The result of somebody's method as (n, width) numbers, or a ValueError that says what is wrong."""
-    array = np.asarray(value, float)
-    found = array.shape
+    try:
+        rows = np.asarray(value, float)
+    except (TypeError, ValueError):
+        raise TypeError(
+            f"{what} returned {type(value).__name__}, which is no array of real numbers"
+        ) from None
+    found = rows.shape
     if found == (n,) and width == 1:
-        array = array.reshape(n, 1)
-    if array.shape != (n, width):
+        rows = rows.reshape(n, 1)
+    if rows.shape != (n, width):
         wanted = f"({n}, {width})" if width > 1 else f"({n},)"
         raise ValueError(f"{what} returned shape {found}; it must be {wanted}")
-    return array
+    return rows
 
 
 def _to_plain(value: Any) -> Any:
@@ -374,11 +362,20 @@ def _from_plain(value: Any) -> Any:
     return kind(**{key: _from_plain(item) for key, item in value.items() if key != "type"})
 
 
-def _short(value: object) -> str:
+def _written(value: object) -> str:
     """A value as it may stand in a line of text."""
     if isinstance(value, np.ndarray):
         return np.array2string(value, threshold=6, separator=", ").replace("\n", "")
     return repr(value)
+
+
+def _owned(value: Any) -> Any:
+    """A value that nobody else can change: arrays and lists are copied."""
+    if isinstance(value, np.ndarray):
+        copy = value.copy()
+        copy.flags.writeable = False
+        return copy
+    return [_owned(item) for item in value] if isinstance(value, list) else value
 
 
 def _remake(kind: type[Compiled], arguments: dict[str, Any]) -> Compiled:

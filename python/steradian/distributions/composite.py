@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from steradian import _internal
-from steradian.distributions.base import Compiled, Distribution
+from steradian.distributions.arguments import array, number
+from steradian.distributions.base import Compiled, Distribution, core_of
+
+WHOLE = 1e-9
+"""How far a sum of weights may be from 1."""
 
 
 class Product(Compiled):
@@ -23,16 +28,16 @@ class Product(Compiled):
     """
 
     def __init__(self, factors: Sequence[Distribution]) -> None:
-        factors = list(factors)
-        super().__init__(_internal.product([p._core for p in factors]), factors=factors)
+        cores = [core_of(f"factors[{i}]", p) for i, p in enumerate(factors)]
+        super().__init__(_internal.product(cores), factors=list(factors))
 
 
 class Mixture(Compiled):
     """p(x) = Σᵢ wᵢ pᵢ(x): one of several distributions of the same space is chosen, and sampled.
 
     ``components``: the distributions; ``weights``: not negative, summing to 1; equal ones if not given. ``0.3
-    * p + 0.7 * q`` is short for ``Mixture([p, q], [0.3, 0.7])``. Raises ValueError naming the weight that is
-    wrong.
+    * p + 0.7 * q`` is short for ``Mixture([p, q], [0.3, 0.7])``, and ``sum`` adds any number of such parts.
+    Raises ValueError naming the weight that is wrong, TypeError naming the component that is none.
 
     >>> import steradian as sr
     >>> half = 0.5 * sr.Uniform(0, 1) + 0.5 * sr.Uniform(0, 2)
@@ -41,13 +46,68 @@ class Mixture(Compiled):
     """
 
     def __init__(self, components: Sequence[Distribution], weights: Sequence[float] | None = None) -> None:
-        components = list(components)
+        cores = [core_of(f"components[{i}]", p) for i, p in enumerate(components)]
         if weights is None:
-            weights = [1 / max(len(components), 1)] * len(components)
-        weights = [float(weight) for weight in weights]
-        super().__init__(
-            _internal.mixture([p._core for p in components], weights), components=components, weights=weights
-        )
+            weights = [1 / max(len(cores), 1)] * len(cores)
+        weights = [number(f"weights[{i}]", weight) for i, weight in enumerate(weights)]
+        super().__init__(_internal.mixture(cores, weights), components=list(components), weights=weights)
+
+    @property
+    def components(self) -> list[Distribution]:
+        """The distributions that are mixed."""
+        return list(self._arguments["components"])
+
+    @property
+    def weights(self) -> list[float]:
+        """Their weights."""
+        return list(self._arguments["weights"])
+
+    def __add__(self, other: Mixture) -> Mixture:
+        """``0.3 * p + 0.7 * q``: unfinished until the weights sum to 1."""
+        if not isinstance(other, Mixture):
+            return NotImplemented
+        return mixed(self.components + other.components, self.weights + other.weights)
+
+    def __radd__(self, nothing: int) -> Mixture:
+        """``0 + p``, with which Python's ``sum`` begins."""
+        return self if isinstance(nothing, int) and nothing == 0 else NotImplemented
+
+
+class Unfinished(Mixture):
+    """A mixture on its way, as ``0.3 * p``, whose weights do not sum to 1 yet.
+
+    All that can be done with it is to add the rest; whatever else is asked is a ValueError that says so.
+    """
+
+    def __init__(self, components: Sequence[Distribution], weights: Sequence[float]) -> None:
+        self._arguments = {"components": list(components), "weights": list(weights)}
+        self.dim = components[0].dim
+        self.space = components[0].space
+
+    def _refuse(self) -> NoReturn:
+        raise ValueError(f"the weights of {self!r} sum to {sum(self.weights):g}, not to 1")
+
+    @property
+    def _core(self) -> _internal.Density:
+        self._refuse()
+
+    @property
+    def uniforms(self) -> int:  # type: ignore[override]
+        """Nobody knows before it is whole."""
+        self._refuse()
+
+    def to_dict(self) -> dict[str, Any]:
+        """Nothing that could be written down."""
+        self._refuse()
+
+    def __repr__(self) -> str:
+        return " + ".join(f"{w} * {p!r}" for w, p in zip(self.weights, self.components, strict=True))
+
+
+def mixed(components: Sequence[Distribution], weights: Sequence[float]) -> Mixture:
+    """A mixture, unfinished if the weights do not sum to 1."""
+    whole = abs(sum(weights) - 1) < WHOLE
+    return (Mixture if whole else Unfinished)(components, weights)
 
 
 class Affine(Compiled):
@@ -64,7 +124,8 @@ class Affine(Compiled):
     """
 
     def __init__(self, of: Distribution, matrix: ArrayLike, offset: ArrayLike = 0.0) -> None:
-        rows, move = np.asarray(matrix, float), np.asarray(offset, float)
+        core_of("of", of)
+        rows, move = array("matrix", matrix), array("offset", offset)
         if rows.ndim == 0:
             rows = rows * np.eye(of.dim)
         if move.ndim == 0:

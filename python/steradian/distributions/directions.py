@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from steradian import _internal
+from steradian.distributions.arguments import number, vector
 from steradian.distributions.base import Compiled
-from steradian.distributions.tables import vector
 
 UP = (0.0, 0.0, 1.0)
 
@@ -66,7 +66,7 @@ class Cone(Compiled):
     """
 
     def __init__(self, axis: ArrayLike, angle: float) -> None:
-        super().__init__(_internal.cone(vector("axis", axis), angle), axis=axis, angle=angle)
+        super().__init__(_internal.cone(vector("axis", axis), number("angle", angle)), axis=axis, angle=angle)
 
 
 class VonMisesFisher(Compiled):
@@ -82,7 +82,7 @@ class VonMisesFisher(Compiled):
     """
 
     def __init__(self, mean_direction: ArrayLike, kappa: float) -> None:
-        core = _internal.von_mises_fisher(vector("mean_direction", mean_direction), kappa)
+        core = _internal.von_mises_fisher(vector("mean_direction", mean_direction), number("kappa", kappa))
         super().__init__(core, mean_direction=mean_direction, kappa=kappa)
 
 

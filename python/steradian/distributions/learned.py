@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from steradian import _internal
-from steradian.distributions.base import Compiled, Distribution
+from steradian.distributions.base import Compiled, Distribution, core_of
 
 Component = tuple[Sequence[Sequence[float]], Sequence[float], Sequence[float]]
 """Knots of each axis; the origin and the rotation matrix (row after row) of its own axes, or two empty."""
@@ -41,7 +41,7 @@ class Learned(Compiled):
         strata: Sequence[tuple[int, float] | None] = (),
     ) -> None:
         core = _internal.learned(
-            over._core,
+            core_of("over", over),
             [(list(knots), list(origin), list(rotation)) for knots, origin, rotation in components],
             list(shares),
             [None if cell is None else (cell[0], cell[1]) for cell in strata],

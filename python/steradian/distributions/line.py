@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from steradian import _internal
-from steradian.distributions.base import Compiled, Distribution
+from steradian.distributions.arguments import array, number
+from steradian.distributions.base import Compiled, Distribution, core_of
 
 
 class Uniform(Compiled):
@@ -23,9 +24,13 @@ class Uniform(Compiled):
     """
 
     def __init__(self, low: ArrayLike = 0.0, high: ArrayLike = 1.0) -> None:
-        lows, highs = np.broadcast_arrays(np.asarray(low, float), np.asarray(high, float))
-        if lows.ndim > 1:
-            raise ValueError(f"low and high have shape {lows.shape}; they must be numbers or (dim,) of them")
+        lows, highs = array("low", low), array("high", high)
+        if lows.ndim > 1 or highs.ndim > 1 or (lows.ndim == highs.ndim == 1 and len(lows) != len(highs)):
+            raise ValueError(
+                f"low and high have shapes {lows.shape} and {highs.shape}; "
+                f"they must be numbers, or (dim,) of them"
+            )
+        lows, highs = np.broadcast_arrays(lows, highs)
         if lows.ndim == 0:
             core = _internal.uniform(float(lows), float(highs))
         else:
@@ -48,7 +53,9 @@ class Linear(Compiled):
     def __init__(
         self, low: float = 0.0, high: float = 1.0, at_low: float = 0.0, at_high: float = 1.0
     ) -> None:
-        core = _internal.linear(low, high, at_low, at_high)
+        core = _internal.linear(
+            number("low", low), number("high", high), number("at_low", at_low), number("at_high", at_high)
+        )
         super().__init__(core, low=low, high=high, at_low=at_low, at_high=at_high)
 
 
@@ -63,7 +70,8 @@ class Tent(Compiled):
     """
 
     def __init__(self, low: float = -1.0, peak: float = 0.0, high: float = 1.0) -> None:
-        super().__init__(_internal.tent(low, peak, high), low=low, peak=peak, high=high)
+        core = _internal.tent(number("low", low), number("peak", peak), number("high", high))
+        super().__init__(core, low=low, peak=peak, high=high)
 
 
 class Exponential(Compiled):
@@ -77,7 +85,7 @@ class Exponential(Compiled):
     """
 
     def __init__(self, rate: float = 1.0) -> None:
-        super().__init__(_internal.exponential(rate), rate=rate)
+        super().__init__(_internal.exponential(number("rate", rate)), rate=rate)
 
 
 class Normal(Compiled):
@@ -91,14 +99,14 @@ class Normal(Compiled):
     """
 
     def __init__(self, mean: float = 0.0, sd: float = 1.0) -> None:
-        super().__init__(_internal.normal(mean, sd), mean=mean, sd=sd)
+        super().__init__(_internal.normal(number("mean", mean), number("sd", sd)), mean=mean, sd=sd)
 
 
 class Power(Compiled):
     """p(x) ∝ x^exponent on [low, high].
 
     Raises ValueError if an end is negative or not finite, they are not in order, or the integral is not
-    finite.
+    finite; from ``low`` = 0 on, ``exponent`` must be above −1 by 0.05, or samples could not be told from 0.
 
     >>> import steradian as sr
     >>> float(sr.Power(2, 0, 1).cdf(0.5).round(12))
@@ -106,7 +114,8 @@ class Power(Compiled):
     """
 
     def __init__(self, exponent: float, low: float = 0.0, high: float = 1.0) -> None:
-        super().__init__(_internal.power(exponent, low, high), exponent=exponent, low=low, high=high)
+        core = _internal.power(number("exponent", exponent), number("low", low), number("high", high))
+        super().__init__(core, exponent=exponent, low=low, high=high)
 
 
 class Truncated(Compiled):
@@ -120,4 +129,5 @@ class Truncated(Compiled):
     """
 
     def __init__(self, of: Distribution, low: float = -np.inf, high: float = np.inf) -> None:
-        super().__init__(_internal.truncated(of._core, low, high), of=of, low=low, high=high)
+        core = _internal.truncated(core_of("of", of), number("low", low), number("high", high))
+        super().__init__(core, of=of, low=low, high=high)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from steradian import _internal
+from steradian.distributions.arguments import number
 from steradian.distributions.base import Compiled
 
 
@@ -18,4 +19,4 @@ class Disk(Compiled):
     """
 
     def __init__(self, radius: float = 1.0) -> None:
-        super().__init__(_internal.disk(radius), radius=radius)
+        super().__init__(_internal.disk(number("radius", radius)), radius=radius)

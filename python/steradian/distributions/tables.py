@@ -8,7 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from steradian import _internal
-from steradian.distributions.base import Array, Compiled
+from steradian.distributions.arguments import Array, array, function, number, numbers, vector
+from steradian.distributions.base import Compiled
+from steradian.distributions.functions import evaluate
 
 
 class PiecewiseConstant(Compiled):
@@ -61,9 +63,13 @@ class Tabulated2D(Compiled):
     """
 
     def __init__(self, values: ArrayLike, low: ArrayLike = (0.0, 0.0), high: ArrayLike = (1.0, 1.0)) -> None:
-        table = np.ascontiguousarray(values, float)
+        table = np.ascontiguousarray(array("values", values))
         if table.ndim != 2:
             raise ValueError(f"values has shape {table.shape}; it must be (nx, ny)")
+        if not np.all((table >= 0) & np.isfinite(table)):
+            i, j = np.argwhere(~((table >= 0) & np.isfinite(table)))[0]
+            value = "NaN" if np.isnan(table[i, j]) else table[i, j]
+            raise ValueError(f"values[{i}, {j}] is {value}; it must be finite and not negative")
         core = _internal.tabulated_2d(table, vector("low", low, 2), vector("high", high, 2))
         super().__init__(core, values=table, low=low, high=high)
 
@@ -132,27 +138,14 @@ class FromPdf(Compiled):
     def __init__(
         self, f: Callable[[Array], ArrayLike], low: float, high: float, tolerance: float = 1e-6
     ) -> None:
+        function("f", f)
+        ends = number("low", low), number("high", high)
+
         def checked(x: Array) -> Array:
-            y = np.asarray(f(x), float)
+            y = evaluate("f", f, x)
             if y.shape != x.shape:
                 raise ValueError(f"f returned shape {y.shape} for {x.shape}; it must return (n,) for (n,)")
             return y
 
-        core, self.error, self.integral = _internal.from_pdf(checked, low, high, tolerance)
+        core, self.error, self.integral = _internal.from_pdf(checked, *ends, number("tolerance", tolerance))
         super().__init__(core, f=f, low=low, high=high, tolerance=tolerance)
-
-
-def numbers(argument: str, value: ArrayLike) -> Array:
-    """``value`` as (n,) numbers. Raises ValueError naming ``argument``."""
-    array = np.ascontiguousarray(value, float)
-    if np.ndim(value) != 1:
-        raise ValueError(f"{argument} has shape {np.shape(value)}; it must be (n,)")
-    return array
-
-
-def vector(argument: str, value: ArrayLike, size: int = 3) -> list[float]:
-    """``value`` as a list of ``size`` numbers. Raises ValueError naming ``argument``."""
-    array = np.asarray(value, float)
-    if array.shape != (size,):
-        raise ValueError(f"{argument} has shape {array.shape}; it must be ({size},)")
-    return [float(x) for x in array]

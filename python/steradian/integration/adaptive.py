@@ -40,9 +40,11 @@ class Iteration(NamedTuple):
     """Of that density; 1 if it has none."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Adapted:
     """An integral, the density that was learned for it, and whether what was seen on the way agrees.
+
+    ``n`` counts all evaluations, ``estimate.n`` those that were not for learning.
 
     >>> import numpy as np, steradian as sr
     >>> found = sr.adapt(lambda x: np.exp(-100 * ((x - 0.3) ** 2).sum(axis=1)), over=[(0, 1)] * 3, n=1 << 15)
@@ -80,6 +82,7 @@ def adapt(
     sequence: str = "sobol",
     replicates: int = 32,
     seed: int = 0,
+    domain: Sequence[tuple[float, float]] | None = None,
     nan: str = "raise",
     batch: int = 1 << 14,
     threads: int = 0,
@@ -102,8 +105,8 @@ def adapt(
     density. If the rounds of learning contradict the result it warns: then the integrand has features that
     the points miss, and more are needed.
 
-    - ``f``, limits, ``seed``, ``nan``, …: as in :func:`integrate`; ``n`` counts all evaluations (2¹⁷ if there
-      is no limit). If ``f`` returns several values a point, the density follows all of them.
+    - ``f``, limits, ``seed``, ``domain``, ``nan``, …: as in :func:`integrate`; ``n`` counts all evaluations
+      (2¹⁷ if there is no limit). If ``f`` returns several values a point, the density follows all of them.
     - ``over``: a distribution, or a box; what is learned multiplies its density.
 
     Raises what :func:`integrate` raises. Warns with :class:`IntegrationWarning` if rounds disagree, or a
@@ -116,7 +119,7 @@ def adapt(
     if n is None and not rtol and not atol and seconds is None:
         n = DEFAULT_N
     asked = make_request(n, rtol, atol, seconds, sequence, replicates, seed, nan, batch, threads, on_progress)
-    asked |= {"known": [], "domains": domains_of([base])}
+    asked |= {"known": [], "domains": domains_of([base], domain)}
     result = _internal.adapt(base._core, prepare(f, base.dim), asked)
     found = Adapted(
         estimate=to_estimate(result.integral),

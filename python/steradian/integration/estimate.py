@@ -14,11 +14,12 @@ from steradian import _internal
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Estimate:
     """What is known of an integral: ``25.0013 ± 0.0046 (n = 100000)``.
 
-    Numbers for one integral, arrays (m,) for an integrand that returns m values a point.
+    Numbers for one integral, arrays (m,) for an integrand that returns m values a point. Two are equal if
+    their means, errors and numbers of points are, however long they took.
 
     >>> import steradian as sr
     >>> estimate = sr.integrate(lambda x: 2 * x, over=sr.Uniform(0, 5), n=4096)
@@ -81,6 +82,16 @@ class Estimate:
         with np.errstate(divide="ignore", invalid="ignore"):
             relative = np.divide(self.stderr, np.abs(self.mean))
         return relative if np.ndim(relative) else float(relative)
+
+    def _key(self) -> tuple[object, ...]:
+        parts = (np.ravel(self.mean).tolist(), np.ravel(self.stderr).tolist())
+        return (np.shape(self.mean), *map(tuple, parts), self.n, self.dof, self.nans)
+
+    def __eq__(self, other: object) -> bool:
+        return self._key() == other._key() if isinstance(other, Estimate) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self._key())
 
     def __float__(self) -> float:
         return float(self.mean)

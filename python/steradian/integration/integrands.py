@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from steradian import _internal
+from steradian.distributions.functions import evaluate as call
 
 Array = NDArray[np.float64]
 
@@ -42,28 +43,19 @@ def prepare(f: object, dim: int, name: str = "f") -> Callable[[Array], Array] | 
     return checked(f, dim, name)
 
 
+def refuse_native(name: str, f: object) -> None:
+    """Raises TypeError if ``f`` is a native function, where only NumPy functions will do."""
+    is_native = isinstance(f, _FUNCTION) or isinstance(getattr(f, "ctypes", None), _FUNCTION)
+    if is_native or type(f).__name__ == "LowLevelCallable":
+        raise TypeError(f"{name} must be a NumPy function; native ones are for f alone")
+
+
 def checked(f: Callable[[Array], Any], dim: int, name: str) -> Callable[[Array], Array]:
     """``f`` over points (n, dim), or (n,) if ``dim`` is 1, with its result as float64, or a clear error."""
 
     def evaluate(x: Array) -> Array:
         n = len(x)
-        try:
-            result = f(x[:, 0] if dim == 1 else x)
-        except TypeError as error:
-            if "only" in str(error) and ("length-1" in str(error) or "0-dimensional" in str(error)):
-                error.add_note(
-                    f"{name} is called with arrays of points: use numpy's functions instead of math's, or "
-                    f"wrap it in numpy.vectorize"
-                )
-            raise
-        try:
-            if np.iscomplexobj(result):
-                raise TypeError("complex numbers are integrated as their real and imaginary parts, (n, 2)")
-            values = np.asarray(result, dtype=np.float64)
-        except (TypeError, ValueError) as error:
-            raise TypeError(
-                f"{name} returned {type(result).__name__}, which is no array of real numbers: {error}"
-            ) from None
+        values = call(name, f, x[:, 0] if dim == 1 else x)
         if values.ndim not in (1, 2) or len(values) != n or (values.ndim == 2 and values.shape[1] == 0):
             points = "(n,)" if dim == 1 else f"(n, {dim})"
             raise ValueError(
@@ -116,7 +108,7 @@ def _ctypes_name(kind: Any) -> str:
         return "float64*"
     if kind in (ctypes.c_int8, ctypes.c_int16, ctypes.c_int32, ctypes.c_int64, ctypes.c_longlong):
         return f"int{8 * ctypes.sizeof(kind)}"
-    return str(kind)
+    return {ctypes.c_float: "float32", ctypes.c_bool: "bool"}.get(kind, getattr(kind, "__name__", str(kind)))
 
 
 def _call(arguments: list[str], result: str, dim: int, name: str) -> str:

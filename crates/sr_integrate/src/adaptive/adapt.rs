@@ -11,6 +11,7 @@ use super::learn::{Learning, learn};
 use super::learned::Learned;
 use super::level::Level;
 use super::round::{REPLICATES, Round};
+use super::units::{InUnit, Unit};
 use crate::columns::{Columns, ColumnsMut};
 use crate::density::{Density, DensityError};
 use crate::integrate::{
@@ -75,19 +76,24 @@ pub fn adapt(
         rtol: plan.rtol,
         until: plan.seconds.map(|seconds| began + Duration::from_secs_f64((0.25 * seconds).min(1e9))),
     };
+    let unit = Unit::default();
+    let mut integrand = InUnit::new(integrand, &unit);
+    let mut integrand = integrand.integrand();
+    let out = |numbers: &[f64]| -> Vec<f64> { numbers.iter().map(|x| unit.get().out(*x)).collect() };
     let mut spent = 0;
     let mut tell = |round: &Round| {
         spent += round.n;
         let seconds = began.elapsed().as_secs_f64();
-        let (mean, stderr) = (round.mean.clone(), round.stderr.clone());
+        let (mean, stderr) = (out(&round.mean), out(&round.stderr));
         on_round(&Progress { n: spent, n_max: plan.n, seconds, mean, stderr })
             .map_err(IntegrateError::Foreign)
     };
-    let lesson = learn(base, integrand, &learning, pool, &mut tell)?;
+    let mut lesson = learn(base, &mut integrand, &learning, pool, &mut tell)?;
     let density = Arc::new(Learned::new(base.clone(), lesson.cube));
     let rest = Plan {
         n: plan.n.map(|n| n.saturating_sub(spent).max(2)),
         seconds: plan.seconds.map(|seconds| (seconds - began.elapsed().as_secs_f64()).max(1e-9)),
+        atol: unit.get().of(plan.atol).min(f64::MAX),
         seed: derive_key(plan.seed, 0xf17a1),
         ..plan.clone()
     };
@@ -96,13 +102,18 @@ pub fn adapt(
             n: progress.n + spent,
             n_max: plan.n,
             seconds: began.elapsed().as_secs_f64(),
-            ..progress.clone()
+            mean: out(&progress.mean),
+            stderr: out(&progress.stderr),
         })
     };
     let technique = Leveled { single: Single(density.clone()), level: lesson.level };
-    let mut integral = integrate(&[(&technique, 1)], integrand, &rest, pool, &mut tell)?;
+    let mut integral = integrate(&[(&technique, 1)], &mut integrand, &rest, pool, &mut tell)?;
     integral.seconds = began.elapsed().as_secs_f64();
     let Agreement { chi2, dof, q } = agreement(&lesson.rounds, &integral);
+    let integral = integral.scaled(|x| unit.get().out(x));
+    for round in &mut lesson.rounds {
+        (round.mean, round.stderr) = (out(&round.mean), out(&round.stderr));
+    }
     Ok(Adapted { integral, density, rounds: lesson.rounds, chi2, dof, q })
 }
 
@@ -143,7 +154,7 @@ fn agreement(rounds: &[Round], integral: &Integral) -> Agreement {
     let rounds: Vec<&Round> = rounds.iter().filter(saw_enough).collect();
     let outputs = integral.mean.len();
     let mut all = Agreement { chi2: 0.0, dof: 0, q: 1.0 };
-    for (a, stderr) in integral.stderr().into_iter().enumerate() {
+    for (a, stderr) in integral.stderr.iter().copied().enumerate() {
         let mut estimates = vec![(integral.mean[a], stderr, integral.dof as f64)];
         estimates
             .extend(rounds.iter().map(|round| (round.mean[a], round.stderr[a], f64::from(REPLICATES - 1))));

@@ -28,6 +28,7 @@ mod round;
 mod strata;
 mod stratify;
 mod training;
+mod units;
 
 pub use adapt::{Adapted, adapt};
 pub use axis::Axis;

@@ -20,6 +20,9 @@ pub struct Affine {
     scale: f64,
 }
 
+/// Of 16 digits so many may cancel where a point is traced back: ten.
+const WORST_CONDITION: f64 = 1e10;
+
 impl Affine {
     /// - `matrix`: A, square, row after row
     /// - `offset`: b
@@ -55,6 +58,18 @@ impl Affine {
         }
         let (inverse, determinant) = invert_matrix(&matrix, dim)?;
         positive("the size of the determinant of matrix", determinant.abs())?;
+        // How much larger than a coordinate of y the terms are that it is the sum of; units of x and y do not matter.
+        let cancels =
+            |i: usize| (0..dim).map(|j| (inverse[i * dim + j] * matrix[j * dim + i]).abs()).sum::<f64>();
+        let condition = (0..dim).map(cancels).fold(0.0, f64::max);
+        if !(condition < WORST_CONDITION) {
+            let what = format!(
+                "can hardly be inverted: its rows are nearly multiples of one another, or sums of such, and {} digits \
+                 of every point would be lost",
+                condition.log10().ceil()
+            );
+            return Err(ParameterError::Shape { argument: "matrix", what });
+        }
         Ok(Self { of, matrix, inverse, offset, scale: determinant.abs().recip() })
     }
 
@@ -313,6 +328,15 @@ mod tests {
         assert!(text(vec![1.0; 3], vec![0.0; 2]).starts_with("matrix has 3 entries; it must have 4"));
         assert!(text(vec![1.0, 0.0, 0.0, f64::NAN], vec![0.0; 2]).starts_with("matrix[1, 1] is NaN"));
         assert!(text(vec![1.0; 4], vec![0.0; 2]).starts_with("matrix cannot be inverted"));
+        let nearly = text(vec![1.0, 1.0, 1.0, 1.0 + 1e-12], vec![0.0; 2]);
+        assert!(
+            nearly.starts_with("matrix can hardly be inverted") && nearly.contains("and 13 digits"),
+            "{nearly}"
+        );
+        assert!(
+            Affine::new(unit(), vec![1e-12, 0.0, 0.0, 1e12], vec![0.0; 2]).is_ok(),
+            "units do not matter"
+        );
         assert!(text(vec![1.0, 0.0, 0.0, 0.0], vec![0.0; 2]).starts_with("row 1 of matrix is 0"));
         assert!(text(vec![1.0, 0.0, 0.0, 1.0], vec![0.0]).starts_with("offset has 1"));
     }

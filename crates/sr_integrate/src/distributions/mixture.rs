@@ -165,13 +165,14 @@ impl Density for Mixture {
         if let [component] = self.components.as_slice() {
             return component.domain();
         }
-        let ranges = || self.components.iter().map(|part| part.domain().unwrap_or_else(|| part.support()));
-        let union = union(ranges());
+        // Each asked once: components may be mixtures themselves, and theirs, too.
+        let known: Vec<_> = self.components.iter().map(|part| (part.domain(), part.support())).collect();
+        let union = union(known.iter().map(|(domain, support)| domain.clone().unwrap_or(support.clone())));
         if self.space.dim() > 1 {
-            return self.components.iter().any(|part| part.domain().is_some()).then_some(union);
+            return known.iter().any(|(domain, _)| domain.is_some()).then_some(union);
         }
-        let covers = |part: &Arc<dyn Density>| part.domain().is_none() && part.support() == union;
-        (!self.components.iter().any(covers)).then_some(union)
+        let covers = |(domain, support): &(Option<_>, Vec<_>)| domain.is_none() && *support == union;
+        (!known.iter().any(covers)).then_some(union)
     }
 
     fn mean(&self) -> Option<Vec<f64>> {

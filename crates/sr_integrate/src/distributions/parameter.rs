@@ -3,13 +3,14 @@
 use thiserror::Error;
 
 use crate::density::DensityError;
+use crate::integrate::number;
 use crate::space::Space;
 
 /// A parameter that no distribution has. The text names the argument and the value.
 #[derive(Debug, Error)]
 pub enum ParameterError {
     /// A number that will not do.
-    #[error("{argument} is {value}; it must be {need}")]
+    #[error("{argument} is {}; it must be {need}", number(*value))]
     Value {
         /// The name of the argument, with its place if it is one of a list.
         argument: String,
@@ -20,11 +21,27 @@ pub enum ParameterError {
     },
     /// Two ends of an interval that has no width, or too much.
     #[error(
-        "{argument} = [{low}, {high}] is no interval; its ends must be finite, and the second above the first"
+        "{argument} = [{}, {}] is no interval; its ends must be finite, and the second above the first",
+        number(*low),
+        number(*high)
     )]
     Interval {
         /// The name of the pair.
         argument: String,
+        /// The lower end given.
+        low: f64,
+        /// The upper end given.
+        high: f64,
+    },
+    /// Two ends between which there is nothing.
+    #[error(
+        "{argument} = [{}, {}] is no interval; the second end must be above the first, and either may be infinite",
+        number(*low),
+        number(*high)
+    )]
+    Cut {
+        /// The name of the pair.
+        argument: &'static str,
         /// The lower end given.
         low: f64,
         /// The upper end given.
@@ -73,7 +90,12 @@ pub enum ParameterError {
         what: &'static str,
     },
     /// A part of a distribution of which nothing is ever drawn.
-    #[error("{argument} = [{low}, {high}] holds nothing: the distribution lies elsewhere")]
+    #[error(
+        "{argument} = [{}, {}] holds nothing: the distribution lies elsewhere, or has a probability there that is too \
+         small for a number",
+        number(*low),
+        number(*high)
+    )]
     Nothing {
         /// The name of the pair.
         argument: &'static str,
@@ -84,8 +106,9 @@ pub enum ParameterError {
     },
     /// A density that cannot be tabulated as closely as was asked for.
     #[error(
-        "the density is not resolved near {near}: its error is {error:.1e} of the whole, and the tolerance \
-         {tolerance:.1e}"
+        "the density is not resolved near {}: its error is {error:.1e} of the whole, and the tolerance \
+         {tolerance:.1e}",
+        number(*near)
     )]
     Unresolved {
         /// Where most of the error is.

@@ -25,7 +25,7 @@ pub fn truncate(of: Arc<dyn Density>, low: f64, high: f64) -> Result<Arc<dyn Den
         });
     }
     if !(low < high) {
-        return Err(ParameterError::Interval { argument: "[low, high]".into(), low, high });
+        return Err(ParameterError::Cut { argument: "[low, high]", low, high });
     }
     let Some(cumulative) = of.cumulative() else {
         let (argument, what) = ("the density to be cut", "distribution function");
@@ -197,6 +197,11 @@ mod tests {
     fn cuts_outside_the_support_cut_nothing() {
         let cut = truncate(Arc::new(Linear::new(0.0, 1.0, 1.0, 0.0).unwrap()), -5.0, 0.5).unwrap();
         assert_eq!(cut.support(), [[0.0, 0.5]]);
+        let text = |low, high| {
+            truncate(Arc::new(Uniform::new(0.0, 1.0).unwrap()), low, high).unwrap_err().to_string()
+        };
+        assert!(text(0.0, 0.0).ends_with("either may be infinite"));
+        assert!(text(1e300, 2e300).starts_with("[low, high] = [1e300, 2e300] holds nothing"));
         let error = truncate(Arc::new(Uniform::new(0.0, 1.0).unwrap()), 2.0, 3.0).unwrap_err();
         assert!(matches!(error, ParameterError::Nothing { .. }), "{error}");
         assert!(truncate(Arc::new(Uniform::new(0.0, 1.0).unwrap()), 0.5, f64::NAN).is_err());

@@ -3,12 +3,16 @@
 use sr_sampling::Estimate;
 use thiserror::Error;
 
+use super::tail::Tail;
+
 /// An integral, or several of one integrand's outputs, with their covariance.
 #[derive(Clone, Debug)]
 pub struct Integral {
     /// The mean of each output.
     pub mean: Vec<f64>,
-    /// The covariance of these means, m × m, row after row. NaN if nobody knows.
+    /// The standard error of each; NaN if nobody knows.
+    pub stderr: Vec<f64>,
+    /// The covariance of these means, m × m, row after row. NaN if nobody knows; 0 or infinite where squares are.
     pub covariance: Vec<f64>,
     /// Degrees of freedom of the covariance: what Student's t needs for an interval.
     pub dof: u64,
@@ -22,6 +26,10 @@ pub struct Integral {
     pub largest_share: f64,
     /// (Σ |f / p|)² / Σ (f / p)² of the first output: as many equal points would do as well (Kish 1965).
     pub effective_n: f64,
+    /// What the largest |f / p| of the first output say of how rare and large they are.
+    pub tail: Tail,
+    /// Did [`Plan::CAP`](super::Plan::CAP) end it, before tolerances were met?
+    pub ended_by_cap: bool,
     /// How long it took.
     pub seconds: f64,
 }
@@ -49,21 +57,48 @@ pub enum ControlError {
     },
 }
 
+/// So many standard errors off, a known integral is none: by chance, with 31 degrees of freedom, once in 10⁹ times.
+const ALARM: f64 = 8.5;
+
 impl Integral {
-    /// The standard error of each output.
-    pub fn stderr(&self) -> Vec<f64> {
-        let m = self.mean.len();
-        (0..m).map(|a| self.covariance[a * m + a].max(0.0).sqrt()).collect()
+    /// The correlation of two outputs; 0 with one that does not vary.
+    fn correlation(&self, a: usize, b: usize) -> f64 {
+        let (m, varies) = (self.mean.len(), self.stderr[a] > 0.0 && self.stderr[b] > 0.0);
+        match varies {
+            true if a == b => 1.0,
+            true => self.covariance[a * m + b] / self.stderr[a] / self.stderr[b],
+            false => 0.0,
+        }
     }
 
     /// Output `a` alone.
     pub fn estimate(&self, a: usize) -> Estimate {
-        Estimate { mean: self.mean[a], stderr: self.stderr()[a], n: self.n }
+        Estimate { mean: self.mean[a], stderr: self.stderr[a], n: self.n }
     }
 
-    /// Does every output's error obey a tolerance?
+    /// Does every output's error obey a tolerance? A relative one says nothing of a mean of 0.
     pub(crate) fn is_within(&self, rtol: f64, atol: f64) -> bool {
-        self.stderr().iter().zip(&self.mean).all(|(stderr, mean)| *stderr <= atol.max(rtol * mean.abs()))
+        let mut outputs = self.stderr.iter().zip(&self.mean);
+        outputs.all(|(stderr, mean)| *stderr <= atol.max(rtol * mean.abs()) && (*mean != 0.0 || atol > 0.0))
+    }
+
+    /// In other units: all outputs multiplied by a positive factor.
+    pub(crate) fn scaled(mut self, by: impl Fn(f64) -> f64) -> Self {
+        self.mean.iter_mut().chain(&mut self.stderr).for_each(|x| *x = by(*x));
+        self.covariance.iter_mut().for_each(|x| *x = by(by(*x)));
+        self
+    }
+
+    /// A control whose points contradict the integral that is said to be known, with what they say instead: the last
+    /// outputs are the controls.
+    pub fn contradicted(&self, known: &[f64]) -> Option<(usize, Estimate)> {
+        let m = self.mean.len() - known.len();
+        known.iter().enumerate().find_map(|(index, value)| {
+            let found = self.estimate(m + index);
+            let rounding = 1e-12 * value.abs().max(found.mean.abs());
+            let beyond = (found.mean - value).abs() > ALARM * found.stderr + rounding;
+            beyond.then_some((index, found))
+        })
     }
 
     /// Takes the last outputs as control variates, whose integrals are known, and removes from the others what is
@@ -83,24 +118,35 @@ impl Integral {
         if self.dof <= k as u64 {
             return Err(ControlError::TooMany { controls: k, dof: self.dof });
         }
-        let all = m + k;
-        let between = |a: usize, b: usize| self.covariance[a * all + b];
+        // In units in which squares are numbers; what does not vary has no error to correct.
+        let unit: Vec<f64> = self.stderr.iter().map(|s| if *s > 0.0 { *s } else { 1.0 }).collect();
+        let known: Vec<f64> = known.iter().zip(&unit[m..]).map(|(value, unit)| value / unit).collect();
+        let scaled: Vec<f64> = self.mean.iter().zip(&unit).map(|(mean, unit)| mean / unit).collect();
+        let between = |a: usize, b: usize| self.correlation(a, b);
         let controls: Vec<f64> = (0..k * k).map(|i| between(m + i / k, m + i % k)).collect();
         let beta: Vec<Vec<f64>> =
             (0..m).map(|a| solve(controls.clone(), (0..k).map(|c| between(a, m + c)).collect())).collect();
         let mean = (0..m)
-            .map(|a| self.mean[a] - (0..k).map(|c| beta[a][c] * (self.mean[m + c] - known[c])).sum::<f64>())
+            .map(|a| {
+                let beyond: f64 = (0..k).map(|c| beta[a][c] * (scaled[m + c] - known[c])).sum();
+                self.mean[a] - beyond * unit[a]
+            })
             .collect();
         let dof = self.dof - k as u64;
         let scale = self.dof as f64 / dof as f64;
         let mut covariance = vec![0.0; m * m];
+        let mut stderr = vec![0.0; m];
         for a in 0..m {
             for b in 0..m {
                 let explained: f64 = (0..k).map(|c| beta[a][c] * between(b, m + c)).sum();
-                covariance[a * m + b] = (between(a, b) - explained) * scale;
+                let rest = (between(a, b) - explained) * scale;
+                covariance[a * m + b] = rest * unit[a] * unit[b];
+                if a == b {
+                    stderr[a] = rest.max(0.0).sqrt() * unit[a];
+                }
             }
         }
-        Ok(Self { mean, covariance, dof, ..self.clone() })
+        Ok(Self { mean, stderr, covariance, dof, ..self.clone() })
     }
 }
 
@@ -133,6 +179,7 @@ fn solve(mut matrix: Vec<f64>, mut right: Vec<f64>) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::tail::Maxima;
     use super::*;
 
     #[test]
@@ -147,6 +194,7 @@ mod tests {
     fn a_control_removes_what_it_explains() {
         let integral = Integral {
             mean: vec![2.0, 1.1],
+            stderr: vec![0.05_f64.sqrt(), 0.1],
             covariance: vec![0.05, 0.02, 0.02, 0.01],
             dof: 31,
             n: 100,
@@ -154,12 +202,17 @@ mod tests {
             not_drawn: 0,
             largest_share: 0.1,
             effective_n: 90.0,
+            tail: Tail::new(&Maxima::default(), 1.0, 90.0, 100),
+            ended_by_cap: false,
             seconds: 0.0,
         };
         let controlled = integral.with_controls(&[1.0]).unwrap();
         assert!((controlled.mean[0] - 1.8).abs() < 1e-12);
         assert!((controlled.covariance[0] - 0.01 * 31.0 / 30.0).abs() < 1e-12);
         assert_eq!(controlled.dof, 30);
+        assert!((controlled.stderr[0].powi(2) - controlled.covariance[0]).abs() < 1e-12);
+        assert_eq!(integral.contradicted(&[1.0]), None);
+        assert_eq!(integral.contradicted(&[2.0]).unwrap().1.mean, 1.1);
         assert_eq!(
             integral.with_controls(&[f64::NAN]).unwrap_err().to_string(),
             "the known integral of control 0 is NaN; it must be finite"

@@ -33,6 +33,14 @@ impl Summary {
         self.squares += other.squares;
         self.largest = self.largest.max(other.largest);
     }
+
+    /// As if all numbers had been multiplied by a positive factor.
+    pub fn scale(&mut self, factor: f64) {
+        self.sum *= factor;
+        self.absolute *= factor;
+        self.squares = self.squares * factor * factor;
+        self.largest *= factor;
+    }
 }
 
 struct Summarise<'a>(&'a [f64]);

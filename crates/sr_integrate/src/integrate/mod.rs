@@ -18,7 +18,9 @@ mod plan;
 mod probe;
 mod resampled;
 mod rounds;
+mod scale;
 mod sums;
+mod tail;
 mod technique;
 
 use thiserror::Error;
@@ -28,10 +30,12 @@ use crate::density::DensityError;
 pub use integral::{ControlError, Integral};
 pub use integrand::{Blocks, Integrand, Parallel};
 pub use plan::{MAX_REPLICATES, Plan, PlanError};
-pub use probe::look_for_holes;
+pub use probe::{look_for_holes, look_past_target};
 pub use resampled::{MAX_CANDIDATES, Resampled, Target};
 pub(crate) use rounds::values_of;
 pub use rounds::{OnRound, Progress, integrate};
+pub(crate) use scale::{Exponent, exponent_of};
+pub use tail::{Maxima, Tail};
 pub use technique::{Combined, Control, Single, Technique, TechniqueError};
 
 /// Why there is no integral.
@@ -47,7 +51,7 @@ pub enum IntegrateError {
     #[error(transparent)]
     Foreign(Box<dyn std::error::Error + Send + Sync>),
     /// The integrand is infinite or not a number at a point.
-    #[error("f returned {value} at x = {}{}", point(x), others(*count, *n))]
+    #[error("f returned {} at x = {}{}", number(*value), point(x), others(*count, *n))]
     NotFinite {
         /// The first such point.
         x: Vec<f64>,
@@ -60,9 +64,10 @@ pub enum IntegrateError {
     },
     /// The density is 0 where the integrand is not.
     #[error(
-        "over has density 0 at x = {}, where f is {value}: samples never fall there, and the integral would miss it; \
+        "over has density 0 at x = {}, where f is {}: samples never fall there, and the integral would miss it; \
          mix in a density that covers the domain",
-        point(x)
+        point(x),
+        number(*value)
     )]
     Hole {
         /// The point.
@@ -70,8 +75,21 @@ pub enum IntegrateError {
         /// What f is there.
         value: f64,
     },
+    /// The target of resampling is 0 where the integrand is not.
+    #[error(
+        "target is 0 at x = {}, where f is {}: such points are never chosen, and the integral would miss them; \
+         add a constant to it",
+        point(x),
+        number(*value)
+    )]
+    TargetHole {
+        /// The point.
+        x: Vec<f64>,
+        /// What f is there.
+        value: f64,
+    },
     /// A value that is finite only before it is divided by the density.
-    #[error("f / p overflows at x = {}, where f is {value} and the density {pdf}", point(x))]
+    #[error("f / p overflows at x = {}, where f is {} and the density {}", point(x), number(*value), number(*pdf))]
     Overflow {
         /// The point.
         x: Vec<f64>,
@@ -93,8 +111,17 @@ pub enum IntegrateError {
 /// A point as people write it: a number, or numbers in brackets.
 pub(crate) fn point(x: &[f64]) -> String {
     match x {
-        [x] => format!("{x}"),
-        x => format!("[{}]", x.iter().map(f64::to_string).collect::<Vec<_>>().join(", ")),
+        [x] => number(*x),
+        x => format!("[{}]", x.iter().map(|x| number(*x)).collect::<Vec<_>>().join(", ")),
+    }
+}
+
+/// A number as people write it: those with many zeros by their exponent.
+pub(crate) fn number(x: f64) -> String {
+    if x == 0.0 || !x.is_finite() || (1e-5..1e16).contains(&x.abs()) {
+        format!("{x}")
+    } else {
+        format!("{x:e}")
     }
 }
 

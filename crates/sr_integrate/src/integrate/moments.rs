@@ -53,6 +53,19 @@ impl Moments {
         self.n = n;
     }
 
+    /// As if number `a` of all vectors had been multiplied by a factor.
+    pub fn scale(&mut self, a: usize, factor: f64) {
+        let m = self.mean.len();
+        if a >= m {
+            return;
+        }
+        self.mean[a] *= factor;
+        for b in 0..m {
+            self.products[a * m + b] *= factor;
+            self.products[b * m + a] *= factor;
+        }
+    }
+
     /// The number of vectors.
     pub fn n(&self) -> u64 {
         self.n

@@ -16,7 +16,8 @@ pub struct Plan {
     pub replicates: u32,
     /// Different seeds give unrelated points.
     pub seed: u64,
-    /// At most so many evaluations; rounded up to a whole number for each replicate and technique.
+    /// At most so many evaluations; rounded up to a whole number for each replicate and technique, and to at least two
+    /// independent points for each technique. [`Plan::CAP`] if only tolerances are given.
     pub n: Option<u64>,
     /// Enough if the standard error is at most this times the mean, without its sign …
     pub rtol: f64,
@@ -71,8 +72,8 @@ pub enum PlanError {
         /// The number given.
         value: f64,
     },
-    /// A time that is not positive.
-    #[error("seconds is {0}; it must be positive")]
+    /// A time that is not positive, or has no end.
+    #[error("seconds is {0}; it must be positive and finite")]
     Seconds(f64),
     /// A batch of no points, or too many.
     #[error("batch is {0}; it must be from 1 to 2^26")]
@@ -86,12 +87,20 @@ impl Plan {
     /// How many evaluations there are if nobody says.
     pub const DEFAULT_N: u64 = 1 << 16;
 
+    /// At most so many evaluations if tolerances alone say when to stop: an integral of 0 never meets a relative one.
+    pub const CAP: u64 = 1 << 26;
+
     /// Evaluations before a tolerance is looked at for the first time.
     pub(crate) const FIRST_LOOK: u64 = 1 << 13;
 
     /// Is there a tolerance?
     pub(crate) fn has_tolerance(&self) -> bool {
         self.rtol > 0.0 || self.atol > 0.0
+    }
+
+    /// The most evaluations, if anything says so.
+    pub(crate) fn most(&self) -> Option<u64> {
+        self.n.or(self.seconds.is_none().then_some(Self::CAP))
     }
 
     /// The most evaluations that replicates of `shares` points each can have.
@@ -113,7 +122,7 @@ impl Plan {
                 return Err(PlanError::Tolerance { name, value });
             }
         }
-        if let Some(seconds) = self.seconds.filter(|seconds| !(*seconds > 0.0)) {
+        if let Some(seconds) = self.seconds.filter(|seconds| !(*seconds > 0.0 && seconds.is_finite())) {
             return Err(PlanError::Seconds(seconds));
         }
         if !(1..=1 << 26).contains(&self.batch) {
@@ -140,6 +149,7 @@ mod tests {
         assert!(says(Plan { rtol: -0.1, ..plan() }).starts_with("rtol is -0.1;"));
         assert!(says(Plan { atol: f64::NAN, ..plan() }).starts_with("atol is NaN;"));
         assert!(says(Plan { seconds: Some(0.0), ..plan() }).starts_with("seconds is 0;"));
+        assert!(says(Plan { seconds: Some(f64::INFINITY), ..plan() }).starts_with("seconds is inf;"));
         assert!(says(Plan { batch: 0, ..plan() }).starts_with("batch is 0;"));
         assert_eq!(Plan::default().check(), Err(PlanError::Endless));
     }

@@ -11,7 +11,8 @@ use super::technique::Technique;
 /// The most candidates of a sample.
 pub const MAX_CANDIDATES: usize = 1 << 12;
 
-/// What resampled points should be proportional to. It need not be normalised; negative and NaN count as 0.
+/// What resampled points should be proportional to. It need not be normalised; it is an error if it is
+/// negative, infinite or not a number.
 pub trait Target: Sync + Debug {
     /// The target at each point.
     ///
@@ -47,6 +48,11 @@ impl<T: Target> Resampled<T> {
         assert!((1..=MAX_CANDIDATES).contains(&candidates), "{candidates} candidates");
         Self { source, target, candidates }
     }
+
+    /// What points are to be proportional to.
+    pub fn target(&self) -> &T {
+        &self.target
+    }
 }
 
 impl<T: Target> Technique for Resampled<T> {
@@ -70,9 +76,11 @@ impl<T: Target> Technique for Resampled<T> {
             let (target, ratio) = (&mut targets[k * n..(k + 1) * n], &mut ratios[k * n..(k + 1) * n]);
             let first = 1 + k * uniforms;
             self.source.sample(u.columns(first..first + uniforms), ColumnsMut::new(points, n), ratio)?;
-            self.target.eval(Columns::new(points, n), target)?;
+            let points = Columns::new(points, n);
+            self.target.eval(points, target)?;
+            DensityError::check("target", target, points, |i| ratio[i] > 0.0)?;
             for (ratio, target) in ratio.iter_mut().zip(target) {
-                *ratio = if *ratio > 0.0 && *target > 0.0 { *target / *ratio } else { 0.0 };
+                *ratio = if *ratio > 0.0 { *target / *ratio } else { 0.0 };
             }
         }
         for (i, factor) in factor.iter_mut().enumerate() {

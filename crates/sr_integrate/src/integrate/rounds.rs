@@ -45,6 +45,9 @@ const TASK_ROWS: u64 = 1024;
 /// … and uniforms.
 const TASK_UNIFORMS: u64 = 1 << 19;
 
+/// A round draws about so many uniforms at most.
+const ROUND_UNIFORMS: u64 = 1 << 25;
+
 /// Points of a round that are drawn at once: the same of several replicates.
 struct Task {
     technique: usize,
@@ -108,7 +111,10 @@ pub fn integrate(
     let replicates = if independent { 1 } else { plan.replicates };
     let a_unit = shares * u64::from(replicates);
     let limit = if independent { u64::MAX / a_unit } else { Points::MAX_LEN / most_share };
-    let target = plan.n.map_or(limit, |n| n.div_ceil(a_unit).min(limit));
+    // One independent point of a technique has no variance.
+    let lone = techniques.iter().any(|&(_, share)| share == 1);
+    let least = if independent && lone { 2 } else { 1 };
+    let target = plan.most().map_or(limit, |n| n.div_ceil(a_unit).clamp(least, limit));
     let points: Vec<Points> = (0..techniques.len())
         .map(|t| {
             Points::new(plan.sequence, techniques[t].0.uniforms(), plan.seed.wrapping_add((t as u64) << 40))
@@ -119,6 +125,9 @@ pub fn integrate(
         Integrand::Blocks(_) => plan.batch as u64,
         Integrand::Parallel(_) => (plan.batch as u64).max(1 << 19),
     };
+    // Rounds of many uniforms would keep others waiting: for memory, for progress, for an end.
+    let widest = techniques.iter().map(|(technique, _)| technique.uniforms()).max().unwrap_or(1).max(1);
+    let batch = batch.min((ROUND_UNIFORMS / widest as u64).max(1));
     let units_a_round = 1 << (batch / a_unit).max(1).ilog2();
     let mut sums = Sums::new(techniques.len(), replicates, independent);
     let (mut done, mut next_look) = (0, Plan::FIRST_LOOK.div_ceil(a_unit).next_power_of_two());
@@ -151,13 +160,13 @@ pub fn integrate(
         sums.check(plan)?;
         done += len;
         let seconds = began.elapsed().as_secs_f64();
-        let integral = sums.integral(seconds);
+        let mut integral = sums.integral(seconds);
         on_round(&Progress {
             n: sums.n(),
             n_max: plan.n.map(|_| target * a_unit),
             seconds,
             mean: integral.mean.clone(),
-            stderr: integral.stderr(),
+            stderr: integral.stderr.clone(),
         })
         .map_err(IntegrateError::Foreign)?;
         let late = plan.seconds.is_some_and(|most| seconds >= most);
@@ -167,6 +176,7 @@ pub fn integrate(
             next_look = done * 2;
         }
         if done >= target || late || sure {
+            integral.ended_by_cap = plan.n.is_none() && !late && !sure;
             return Ok(integral);
         }
     }

@@ -18,8 +18,13 @@ fn outcome(report: TestReport) -> Outcome {
     (report.statistic, report.dof, report.p_value, report.remark)
 }
 
-/// A density as the chi-square test sees it.
+/// A density as the chi-square test sees it; every call may end the test by a signal.
 struct AsBlocks(Arc<dyn sr_integrate::Density>);
+
+/// Lets Python answer signals.
+fn check_signals() -> Result<(), DensityError> {
+    Python::attach(|py| py.check_signals()).map_err(|error| DensityError::Foreign(Box::new(error)))
+}
 
 impl Blocks for AsBlocks {
     type Error = DensityError;
@@ -37,11 +42,13 @@ impl Blocks for AsBlocks {
     }
 
     fn sample(&mut self, u: &[f64], x: &mut [f64], pdf: &mut [f64]) -> Result<(), DensityError> {
+        check_signals()?;
         let n = pdf.len();
         self.0.sample(Columns::new(u, n), ColumnsMut::new(x, n), pdf)
     }
 
     fn pdf(&mut self, x: &[f64], pdf: &mut [f64]) -> Result<(), DensityError> {
+        check_signals()?;
         self.0.pdf(Columns::new(x, pdf.len()), pdf)
     }
 }
@@ -70,7 +77,15 @@ pub fn chi2(py: Python<'_>, density: &Density, samples: u32, cells: usize, seed:
         Space::SolidAngle => py.detach(|| blocks::directions(&mut of, settings)),
         Space::Line | Space::Plane | Space::Volume(_) => py.detach(|| blocks::real(&mut of, settings)),
     };
-    report.map(outcome).map_err(|error| density_error(py, error))
+    match report {
+        Ok(report) => Ok(outcome(report)),
+        // What cannot be integrated with is a finding here.
+        Err(improper @ DensityError::Improper { .. }) => {
+            let remark = format!("a density that is not a positive number: {improper}");
+            Ok((f64::INFINITY, 0.0, 0.0, remark))
+        }
+        Err(error) => Err(density_error(py, error)),
+    }
 }
 
 /// Were numbers, in ascending order, drawn with a distribution function that has these values at them?

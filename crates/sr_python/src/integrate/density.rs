@@ -17,6 +17,7 @@ pub struct Density(pub Arc<dyn sr_integrate::Density>);
 pub fn density_error(py: Python<'_>, error: DensityError) -> PyErr {
     match error {
         DensityError::Foreign(error) => foreign_error(py, error),
+        improper @ DensityError::Improper { .. } => PyValueError::new_err(improper.to_string()),
     }
 }
 

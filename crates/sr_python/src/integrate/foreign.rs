@@ -18,6 +18,8 @@ fn foreign(error: PyErr) -> DensityError {
 pub struct ForeignDensity {
     /// `sample(u) -> (x, pdf)` and `pdf(x)`, over float64 arrays whose shapes were checked.
     pub object: Py<PyAny>,
+    /// Its class, for messages.
+    pub name: String,
     pub space: Space,
     pub uniforms: usize,
     pub support: Vec<[f64; 2]>,
@@ -61,8 +63,9 @@ impl sr_integrate::Density for ForeignDensity {
         self.uniforms
     }
 
-    fn sample(&self, u: Columns<'_>, x: ColumnsMut<'_>, pdf: &mut [f64]) -> Result<(), DensityError> {
-        self.sample_rows(u, x, pdf).map_err(foreign)
+    fn sample(&self, u: Columns<'_>, mut x: ColumnsMut<'_>, pdf: &mut [f64]) -> Result<(), DensityError> {
+        self.sample_rows(u, x.reborrow(), pdf).map_err(foreign)?;
+        DensityError::check(&format!("the pdf of {}.sample", self.name), pdf, x.as_columns(), |_| true)
     }
 
     fn pdf(&self, x: Columns<'_>, pdf: &mut [f64]) -> Result<(), DensityError> {
@@ -70,7 +73,8 @@ impl sr_integrate::Density for ForeignDensity {
             let rows = to_rows(py, x.numbers().to_vec(), pdf.len())?;
             copy(self.object.call_method1(py, "_pdf_rows", (rows,))?.bind(py), pdf.len(), pdf)
         })
-        .map_err(foreign)
+        .map_err(foreign)?;
+        DensityError::check(&format!("{}.pdf", self.name), pdf, x, |_| true)
     }
 
     fn support(&self) -> Vec<[f64; 2]> {

@@ -37,6 +37,7 @@ pub fn made<D: RustDensity + 'static, E: ToString>(density: Result<D, E>) -> PyR
 #[pyfunction]
 fn foreign_density(
     object: Py<PyAny>,
+    name: String,
     space: &str,
     dim: usize,
     uniforms: usize,
@@ -48,7 +49,7 @@ fn foreign_density(
         "counting" => Space::Counting,
         _ => Space::real(dim),
     };
-    Density(Arc::new(ForeignDensity { object, space, uniforms, support }))
+    Density(Arc::new(ForeignDensity { object, name, space, uniforms, support }))
 }
 
 #[pyfunction]

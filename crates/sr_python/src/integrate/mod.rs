@@ -12,12 +12,15 @@ mod native;
 mod request;
 mod run;
 
+use numpy::PyArray1;
 use pyo3::prelude::*;
 
 pub use density::Density;
 
 /// Adds what this folder has to the module.
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    // The first array looks up NumPy's functions, and would take a Ctrl-C that comes then for NumPy's absence.
+    drop(PyArray1::<f64>::zeros(module.py(), 0, false));
     module.add_class::<Density>()?;
     module.add_class::<native::Native>()?;
     module.add_class::<run::Integral>()?;

@@ -126,7 +126,9 @@ fn integrate_error(py: Python<'_>, error: IntegrateError) -> PyErr {
         IntegrateError::Density(error) => density_error(py, error),
         IntegrateError::NotFinite { x, value, count, .. } => raise("IntegrandError", x, value, count),
         IntegrateError::Overflow { x, value, .. } => raise("IntegrandError", x, value, 1),
-        IntegrateError::Hole { x, value } => raise("SupportError", x, value, 1),
+        IntegrateError::Hole { x, value } | IntegrateError::TargetHole { x, value } => {
+            raise("SupportError", x, value, 1)
+        }
         IntegrateError::Plan(_) | IntegrateError::Outputs { .. } => PyValueError::new_err(error.to_string()),
     }
 }

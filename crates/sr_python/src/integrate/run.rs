@@ -5,7 +5,9 @@ use std::sync::Arc;
 use numpy::PyArray2;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use sr_integrate::integrate::{Combined, MAX_CANDIDATES, Resampled, Single, Target, Technique};
+use sr_integrate::integrate::{
+    Combined, MAX_CANDIDATES, Resampled, Single, Target, Technique, look_past_target,
+};
 use sr_integrate::{ColumnsMut, Points};
 
 use super::arrays::to_rows;
@@ -21,6 +23,7 @@ const MAX_NUMBERS: usize = 1 << 31;
 #[pyclass(frozen, module = "steradian._internal", get_all)]
 pub struct Integral {
     mean: Vec<f64>,
+    stderr: Vec<f64>,
     covariance: Vec<f64>,
     dof: u64,
     n: u64,
@@ -28,14 +31,35 @@ pub struct Integral {
     not_drawn: u64,
     largest_share: f64,
     effective_n: f64,
+    /// By the largest points; `None` if these are too few.
+    tail_index: Option<f64>,
+    has_heavy_tail: bool,
+    ended_by_cap: bool,
     seconds: f64,
+    /// A control, and the mean and standard error of its points, which contradict its known integral.
+    contradicted: Option<(usize, f64, f64)>,
 }
 
 impl From<sr_integrate::Integral> for Integral {
     fn from(integral: sr_integrate::Integral) -> Self {
-        let sr_integrate::Integral { mean, covariance, dof, n, .. } = integral;
-        let sr_integrate::Integral { nans, not_drawn, largest_share, effective_n, seconds, .. } = integral;
-        Self { mean, covariance, dof, n, nans, not_drawn, largest_share, effective_n, seconds }
+        let sr_integrate::Integral { mean, stderr, covariance, dof, n, .. } = integral;
+        let sr_integrate::Integral { nans, not_drawn, largest_share, effective_n, .. } = integral;
+        Self {
+            mean,
+            stderr,
+            covariance,
+            dof,
+            n,
+            nans,
+            not_drawn,
+            largest_share,
+            effective_n,
+            tail_index: integral.tail.index,
+            has_heavy_tail: integral.tail.is_heavy(),
+            ended_by_cap: integral.ended_by_cap,
+            seconds: integral.seconds,
+            contradicted: None,
+        }
     }
 }
 
@@ -95,7 +119,12 @@ pub fn ris_integrate(
         f: &Bound<'_, PyAny>,
         request: &Request,
     ) -> PyResult<Integral> {
-        run(py, &[(&Resampled::new(source.0.clone(), target, candidates), 1)], f, request)
+        let resampled = Resampled::new(source.0.clone(), target, candidates);
+        let integral = request.run(py, f, |integrand, plan, pool, on_round| {
+            look_past_target(&*source.0, resampled.target(), integrand)?;
+            sr_integrate::integrate(&[(&resampled, 1)], integrand, plan, pool, on_round)
+        })?;
+        Ok(integral.into())
     }
     match target.cast::<Density>() {
         Ok(density) if density.get().0.space() == source.0.space() => {
@@ -122,7 +151,10 @@ fn run(
     if request.known.is_empty() {
         return Ok(integral.into());
     }
-    Ok(integral.with_controls(&request.known).map_err(value_error)?.into())
+    let controlled = integral.with_controls(&request.known).map_err(value_error)?;
+    let contradicted = integral.contradicted(&request.known);
+    let contradicted = contradicted.map(|(index, found)| (index, found.mean, found.stderr));
+    Ok(Integral { contradicted, ..controlled.into() })
 }
 
 /// Points (n, dim) of a sequence, from index `first` of a replicate on.
