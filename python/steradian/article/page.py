@@ -27,6 +27,9 @@ from steradian.integration.estimate import format_uncertain
 TITLE = "Monte Carlo integration, as it ran"
 ARTICLE = "Taehwan Kim, “Monte Carlo and Importance Sampling for Rendering”, 2025"
 
+FAR_TOO_NEAR = 1e-3
+"""A truth within so few standard errors is not chance: once in a thousand runs."""
+
 
 def page(chapters: Sequence[Chapter], seed: int, seconds: float) -> str:
     """The whole page, from finished chapters."""
@@ -195,10 +198,11 @@ def _mistake(mistake: Mistake) -> str:
     if mistake.answer is not None:
         mean, stderr = float(mistake.answer.mean), float(mistake.answer.stderr)
         away = abs(mean - mistake.exact) / stderr
-        parts.append(
-            f"It says {format_uncertain(mean, stderr)}; the truth is {mistake.exact:.6g}, "
-            f"{away:,.3g} of its standard errors away."
-        )
+        says = f"It says {format_uncertain(mean, stderr)}; the truth is {mistake.exact:.6g}, "
+        if away < FAR_TOO_NEAR:
+            parts.append(f"{says}so near that it is the error which is wrong: far too large.")
+        else:
+            parts.append(f"{says}{away:,.3g} of its standard errors away.")
     if mistake.message is None:
         parts.append(f'<span class="fails">Not caught by</span> <code>{html.escape(mistake.check)}</code>.')
     else:

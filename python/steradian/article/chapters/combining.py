@@ -78,7 +78,8 @@ def tell(page: Chapter) -> None:
         density, and lets each sample count by how much its own density is to be trusted at that place:
         weights that sum to 1 wherever the integrand is not 0. The balance heuristic weighs by
         <i>P</i><sub>i</sub>/Σ<i>P</i><sub>j</sub>, the power heuristic by the squares; cutoff and
-        maximum are sharper still. None of them can be wrong, only noisier.
+        maximum are sharper still. None of them can be wrong, only noisier, as long as one of the densities is
+        positive wherever f is not 0.
     """)
     exact = mixture.exact_integral()
     n = page.n(500_000)
