@@ -21,5 +21,7 @@ pub use measure::{Area, Counting, Lebesgue, Line, Measure, Plane, Real, SolidAng
 pub use mis::{Heuristic, UnknownHeuristic, balance_weight, mis_estimate, power_weight};
 pub use mixture::{Mix2, Mixture, MixtureError};
 pub use sequence::{Cursor, Independent, OwenSobol, SampleId, Sequence, SequenceKind, UnknownSequence};
-pub use table::{AliasTable, Discrete, PiecewiseConstant1D, PiecewiseConstant2D, TableError};
+pub use table::{
+    AliasTable, Discrete, PiecewiseConstant1D, PiecewiseConstant2D, SummedArea, TableError, Window,
+};
 pub use uniforms::Uniforms;

@@ -3,6 +3,7 @@
 //! - [`Discrete`]: an index, by binary search; keeps the order of the uniforms.
 //! - [`AliasTable`]: an index, in constant time; does not keep it.
 //! - [`PiecewiseConstant1D`], [`PiecewiseConstant2D`]: histograms as densities.
+//! - [`SummedArea`]: a histogram of which any window is a density.
 //!
 //! Invariant: `pdf` is the probability with which `sample` draws, not the weight it was built from;
 //! where the two differ by rounding, the former is what makes an estimate unbiased.
@@ -12,6 +13,7 @@ mod cumulative;
 mod discrete;
 mod piecewise_1d;
 mod piecewise_2d;
+mod summed_area;
 
 use thiserror::Error;
 
@@ -19,6 +21,7 @@ pub use alias::AliasTable;
 pub use discrete::Discrete;
 pub use piecewise_1d::PiecewiseConstant1D;
 pub use piecewise_2d::PiecewiseConstant2D;
+pub use summed_area::{SummedArea, Window};
 
 /// Why a table of weights is not a distribution.
 #[derive(Clone, Debug, PartialEq, Error)]

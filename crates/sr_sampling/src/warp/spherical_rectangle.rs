@@ -58,29 +58,68 @@ impl SphericalRectangle {
     ///
     /// With b = y / hypot(y, distance) and s = x / hypot(x, distance), [`solid_angle`]'s primitive is
     /// asin(b s). So asin(b₁ s) − asin(b₀ s) = φ is to be solved for s: the law of cosines in a
-    /// triangle with sides b₀ and b₁ and the angle φ between them.
+    /// triangle with sides b₀ and b₁ and the angle φ between them. Of φ, which is the area and the same difference at
+    /// the left edge, only sine and cosine are needed: by the addition theorems, without an inverse function.
     fn column(&self, area: f64) -> f64 {
-        let [b0, b1] = self.y.map(|y| y / y.hypot(self.distance));
-        let left = self.x[0] / self.x[0].hypot(self.distance);
-        let phi = area + (b1 * left).asin() - (b0 * left).asin();
-        let half_sin = (0.5 * phi).sin();
-        let s = phi.sin() / ((b1 - b0) * (b1 - b0) + 4.0 * b0 * b1 * half_sin * half_sin).sqrt();
+        let [b0, b1] = self.y.map(|y| y / length(y, self.distance));
+        let left = self.x[0] / length(self.x[0], self.distance);
+        let (sin0, sin1) = (b0 * left, b1 * left);
+        let (cos0, cos1) = ((1.0 - sin0 * sin0).max(0.0).sqrt(), (1.0 - sin1 * sin1).max(0.0).sqrt());
+        let (sin_left, cos_left) = (sin1 * cos0 - cos1 * sin0, cos1 * cos0 + sin1 * sin0);
+        let (sin_area, cos_area) = area.sin_cos();
+        let sin = sin_area * cos_left + cos_area * sin_left;
+        let cos = cos_area * cos_left - sin_area * sin_left;
+        let s = sin / (b0 * b0 + b1 * b1 - 2.0 * b0 * b1 * cos).max(f64::MIN_POSITIVE).sqrt();
         let x = self.distance * s / (1.0 - s * s).max(f64::MIN_POSITIVE).sqrt();
         x.clamp(self.x[0], self.x[1])
     }
 
     /// Heights of the rectangle's lower and upper edge in the column at x, as sines of elevation.
     fn heights(&self, x: f64) -> [f64; 2] {
-        let r = x.hypot(self.distance);
-        self.y.map(|y| y / y.hypot(r))
+        let r = length(x, self.distance);
+        self.y.map(|y| y / length(y, r))
     }
+}
+
+/// The hypotenuse. (`hypot` guards against sizes that nothing here has, at several times the price.)
+fn length(x: f64, y: f64) -> f64 {
+    (x * x + y * y).sqrt()
 }
 
 /// The solid angle of [x0, x1] × [y0, y1] at a distance.
 fn solid_angle(x: [f64; 2], y: [f64; 2], distance: f64) -> f64 {
-    // ∫∫ d dx dy / (x² + y² + d²)^(3/2) has the primitive atan(x y / (d √(x² + y² + d²))).
-    let primitive = |x: f64, y: f64| (x * y).atan2(distance * (x * x + y * y + distance * distance).sqrt());
-    primitive(x[1], y[1]) - primitive(x[0], y[1]) - primitive(x[1], y[0]) + primitive(x[0], y[0])
+    // ∫∫ d dx dy / (x² + y² + d²)^(3/2) has the primitive atan(x y / (d √(x² + y² + d²))). The four angles are added
+    // as complex numbers, for one inverse function in place of four: a product has the sum of its factors' angles.
+    let corner = |x: f64, y: f64| {
+        let (re, im) = (distance * (x * x + y * y + distance * distance).sqrt(), x * y);
+        let scale = 1.0 / length(re, im);
+        (re * scale, im * scale)
+    };
+    let product = |(a, b): (f64, f64), (c, d): (f64, f64)| (a * c - b * d, a * d + b * c);
+    let conjugate = |(a, b): (f64, f64)| (a, -b);
+    let outer = product(corner(x[1], y[1]), corner(x[0], y[0]));
+    let inner = product(corner(x[0], y[1]), corner(x[1], y[0]));
+    let (re, im) = product(outer, conjugate(inner));
+    let angle = im.atan2(re);
+    // between 0 and 2π, but for rounding about 0
+    if angle < -1e-9 { angle + std::f64::consts::TAU } else { angle }
+}
+
+impl SphericalRectangle {
+    /// The point of the rectangle that `sample` draws the direction to: where along each edge, in [0, 1].
+    pub fn place(&self, u: Vec2) -> Vec2 {
+        let [x, y] = self.point(u);
+        let along = |v: f64, [low, high]: [f64; 2]| ((v - low) / (high - low)) as f32;
+        Vec2::new(along(x, self.x), along(y, self.y))
+    }
+
+    fn point(&self, u: Vec2) -> [f64; 2] {
+        let x = self.column(f64::from(u.x) * self.solid_angle);
+        let [low, high] = self.heights(x);
+        let h = low + f64::from(u.y) * (high - low);
+        let r = length(x, self.distance);
+        [x, (h * r / (1.0 - h * h).max(f64::MIN_POSITIVE).sqrt()).clamp(self.y[0], self.y[1])]
+    }
 }
 
 impl Distribution for SphericalRectangle {
@@ -88,11 +127,7 @@ impl Distribution for SphericalRectangle {
     type Uniform = Vec2;
 
     fn sample(&self, u: Vec2) -> Option<Sample<SolidAngle>> {
-        let x = self.column(f64::from(u.x) * self.solid_angle);
-        let [low, high] = self.heights(x);
-        let h = low + f64::from(u.y) * (high - low);
-        let r = x.hypot(self.distance);
-        let y = (h * r / (1.0 - h * h).max(f64::MIN_POSITIVE).sqrt()).clamp(self.y[0], self.y[1]);
+        let [x, y] = self.point(u);
         let [x_axis, y_axis, z_axis] = self.frame;
         let w = (x * x_axis + y * y_axis - self.distance * z_axis).normalize();
         Some(Sample { value: w.as_vec3(), pdf: 1.0 / self.solid_angle() })
@@ -122,7 +157,7 @@ impl Invert for SphericalRectangle {
         let x = x.clamp(self.x[0], self.x[1]);
         let share = solid_angle([self.x[0], x], self.y, self.distance) / self.solid_angle;
         let [low, high] = self.heights(x);
-        let h = y / y.hypot(x.hypot(self.distance));
+        let h = y / length(y, length(x, self.distance));
         Some(Vec2::new(clamp_unit(share as f32), clamp_unit(((h - low) / (high - low)) as f32)))
     }
 }
@@ -175,6 +210,8 @@ mod tests {
                 let s = rectangle.sample(u).unwrap();
                 assert!((s.value.length() - 1.0).abs() < 1e-6);
                 assert_eq!(rectangle.pdf(s.value), s.pdf, "{u} of {rectangle:?}");
+                let place = rectangle.place(u);
+                assert!(place.min_element() >= 0.0 && place.max_element() <= 1.0, "{place}");
                 let error = (rectangle.invert(s.value).unwrap() - u).length();
                 assert!(
                     error < 1e-5_f32.max(1e-6 / rectangle.solid_angle()),
