@@ -5,12 +5,13 @@
 //!
 //! - `xml`: text to nodes: includes, references' names, `$parameters`. Decides no meaning.
 //! - `lower`: nodes to the description: plugins, defaults, units. Knows no XML.
-//! - `mesh`, `images`, `jpeg`: the files that scenes name, read in parallel, each once.
+//! - `mesh`, `images`, `jpeg`, `ies`: the files that scenes name, read in parallel, each once.
 //!
 //! Invariant: no input makes this crate panic, loop for ever or use memory without bound; and nothing a file
 //! asks for is dropped without a diagnostic.
 
 mod files;
+mod ies;
 mod images;
 mod jpeg;
 mod lower;

@@ -7,13 +7,10 @@ use std::sync::Arc;
 use sr_geometry::{
     Disk, Geometry, GeometryError, GeometryInput, Instance, Shape, ShapeId, Sphere, TriangleMesh,
 };
-use sr_scene::{CameraDesc, Emission, LightDesc, MaterialId, MeshDesc, SceneDesc, Settings, ShapeDesc};
+use sr_scene::{CameraDesc, Emission, MaterialId, MeshDesc, SceneDesc, Settings, ShapeDesc};
 use thiserror::Error;
 
-use crate::light::{
-    AreaLight, ConstantEnvironment, Delta, DirectionalLight, Environment, Extended, LightId, Lights,
-    PointLight, SpotLight, Triangle,
-};
+use crate::light::{AreaLight, Compiled, Extended, LightId, Lights, Triangle, compile_light};
 use crate::material::{MaterialError, Materials};
 use crate::texture::Textures;
 
@@ -181,35 +178,15 @@ fn compile_lights(
         emitters.push(input_shape(shape));
     }
     for light in &desc.lights {
-        match *light {
-            LightDesc::Constant { radiance, .. } => {
-                extended.push(Extended::Constant(ConstantEnvironment { radiance }));
-            }
-            LightDesc::Environment { image, scale, world_from_light, .. } => {
-                let image = Arc::clone(&desc.images[image as usize]);
-                extended.push(Extended::Environment(Environment::new(image, scale, world_from_light)));
-            }
-            LightDesc::Point { position, intensity, .. } => {
-                deltas.push(Delta::Point(PointLight { position, intensity }));
-            }
-            LightDesc::Directional { direction, irradiance, .. } => {
-                deltas.push(Delta::Directional(DirectionalLight { direction, irradiance }));
-            }
-            LightDesc::Spot { world_from_light, intensity, cutoff_angle, beam_width, texture, .. } => {
-                deltas.push(Delta::Spot(SpotLight::new(
-                    world_from_light,
-                    intensity,
-                    cutoff_angle,
-                    beam_width,
-                    texture,
-                )));
-            }
+        match compile_light(light, desc) {
+            Compiled::Extended(light) => extended.push(light),
+            Compiled::Delta(light) => deltas.push(light),
         }
     }
     let emitters = Geometry::build(GeometryInput { shapes: emitters, ..GeometryInput::default() })?;
     let bounds = geometry.bounds();
     let radius = if bounds.is_empty() { 1.0 } else { 0.5 * (bounds.max - bounds.min).length() };
-    Ok((Lights::new(extended, deltas, emitters, light_of_emitter, radius), light_of_shape))
+    Ok((Lights::new(extended, deltas, emitters, light_of_emitter, radius, textures), light_of_shape))
 }
 
 /// The area light of a shape; `None` if it has no area.
@@ -224,15 +201,13 @@ fn area_light(
         sr_scene::Geometry::Mesh(mesh) => {
             let corners = (0..mesh.triangles.len() as u32).map(|primitive| {
                 let positions = geometry.triangle_vertices(id, primitive);
-                let [a, b, c] = positions;
                 let of = mesh.triangles[primitive as usize].map(|i| i as usize);
-                let normal = (b - a).cross(c - a).normalize_or_zero();
                 let uvs = if mesh.uvs.is_empty() {
                     [glam::Vec2::ZERO, glam::Vec2::X, glam::Vec2::Y]
                 } else {
                     of.map(|i| mesh.uvs[i])
                 };
-                Triangle { positions, uvs, normal }
+                Triangle::new(positions, uvs)
             });
             AreaLight::mesh(corners.collect(), emission.radiance, textures)
         }

@@ -10,6 +10,7 @@ pub mod image;
 pub mod light;
 pub mod material;
 mod places;
+pub mod profile;
 mod report;
 pub mod shape;
 pub mod texture;
@@ -19,10 +20,11 @@ pub use camera::{CameraDesc, FilmDesc, FilterDesc, FovAxis};
 pub use desc::{MaterialId, SceneDesc, Settings, TextureId};
 pub use diagnostic::{Diagnostic, Diagnostics, Severity, SourceId, Sources, Span};
 pub use image::{Image, Pixels};
-pub use light::LightDesc;
+pub use light::{LightDesc, MAX_PORTALS, Portal, SphereMapping};
 pub use material::{
     ColorInput, MaterialDesc, MicrofacetKind, PrincipledDesc, PrincipledThinDesc, ScalarInput, Tilting,
 };
+pub use profile::IntensityProfile;
 pub use shape::{Emission, Geometry, GroupDesc, InstanceDesc, MeshDesc, ShapeDesc};
 pub use texture::{Filter, TextureDesc, Wrap};
 pub use validate::{MAX_FILM_PIXELS, validate};

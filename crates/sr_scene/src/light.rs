@@ -1,8 +1,34 @@
 //! Lights that are not shapes.
 
+use std::sync::Arc;
+
 use glam::{Mat3, Mat4, Vec3};
 
-use crate::{Rgb, TextureId, diagnostic::Span};
+use crate::{ColorInput, FovAxis, IntensityProfile, Rgb, TextureId, diagnostic::Span};
+
+/// How an image holds all directions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SphereMapping {
+    /// Latitude and longitude: a direction (x, y, z) is at u = atan2(x, −z) / 2π (mod 1), v = acos(y) / π, v = 0 being
+    /// the top row.
+    LatLong,
+    /// An octahedron unfolded into a square so that areas are kept (Clarberg 2008, "Fast Equal-Area Mapping of the
+    /// (Hemi)Sphere Using SIMD"), as pbrt-v4 stores environments: +Z in the middle, −Z at the corners, +X to the right,
+    /// +Y downwards.
+    EqualAreaOctahedral,
+}
+
+/// How many portals an environment may have.
+pub const MAX_PORTALS: usize = 16;
+
+/// A rectangular opening through which the light around the scene comes in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Portal {
+    /// A corner.
+    pub corner: Vec3,
+    /// The two edges that leave it, perpendicular to each other; their cross product points inside.
+    pub edges: [Vec3; 2],
+}
 
 /// A light without a surface in the scene.
 #[derive(Clone, Debug)]
@@ -14,17 +40,20 @@ pub enum LightDesc {
         /// Where it was described.
         span: Span,
     },
-    /// An image around the scene, in latitude–longitude form.
-    ///
-    /// A direction (x, y, z) in the environment's space is looked up at
-    /// u = atan2(x, −z) / 2π (mod 1), v = acos(y) / π, v = 0 being the top row.
+    /// An image around the scene.
     Environment {
         /// Index into [`crate::SceneDesc::images`].
         image: u32,
+        /// How it holds the directions.
+        mapping: SphereMapping,
         /// Multiplies the image.
         scale: f32,
         /// Rotation from the environment's space.
         world_from_light: Mat3,
+        /// Is the density with which it is sampled made for sharing with another technique (Karlík et al. 2019)?
+        mis_compensation: bool,
+        /// Openings through which to sample it. They change the noise, never the picture.
+        portals: Vec<Portal>,
         /// Where it was described.
         span: Span,
     },
@@ -58,6 +87,76 @@ pub enum LightDesc {
         beam_width: f32,
         /// Projected image, looked up over the cone's bounding square.
         texture: Option<TextureId>,
+        /// Where it was described.
+        span: Span,
+    },
+    /// A point that projects an image along +Z of its own space, as a camera there would see it.
+    Projector {
+        /// Placement.
+        world_from_light: Mat4,
+        /// Irradiance, over π, on the plane one unit away from the point, over the image.
+        irradiance: ColorInput,
+        /// Multiplies it.
+        scale: f32,
+        /// The side of the image along which `fov` is measured.
+        fov_axis: FovAxis,
+        /// Field of view, in radians.
+        fov: f32,
+        /// Where it was described.
+        span: Span,
+    },
+    /// A point whose intensity an image tells for each direction.
+    Goniometric {
+        /// Placement.
+        world_from_light: Mat4,
+        /// Radiant intensity where the image is 1.
+        intensity: Rgb,
+        /// Index into [`crate::SceneDesc::images`].
+        image: u32,
+        /// How it holds the directions.
+        mapping: SphereMapping,
+        /// Where it was described.
+        span: Span,
+    },
+    /// A luminaire as it was measured, at a point; its nadir is +Z of its own space, the plane of horizontal angle 0 has
+    /// +X in it.
+    Profile {
+        /// Placement.
+        world_from_light: Mat4,
+        /// Multiplies the candelas of the profile.
+        intensity: Rgb,
+        /// The measurement.
+        profile: Arc<IntensityProfile>,
+        /// Where it was described.
+        span: Span,
+    },
+    /// The clear sky of the model of Hošek & Wilkie (2012), above the horizon of its own space, whose +Z is the zenith.
+    Sky {
+        /// Haze: 1 is air without any, 10 is thick.
+        turbidity: f32,
+        /// What the ground reflects.
+        albedo: Rgb,
+        /// Towards the sun, in its own space, unit length.
+        sun_direction: Vec3,
+        /// Multiplies the radiance.
+        scale: f32,
+        /// Rotation from its own space.
+        world_from_light: Mat3,
+        /// Where it was described.
+        span: Span,
+    },
+    /// The disk of the sun, as bright as that sky leaves it (Hošek & Wilkie 2013).
+    Sun {
+        /// As for the sky.
+        turbidity: f32,
+        /// Towards its middle, in the sky's space, unit length.
+        direction: Vec3,
+        /// Multiplies the radiance.
+        scale: f32,
+        /// The angle that it fills, in radians. Its irradiance does not depend on that.
+        aperture: f32,
+        /// Rotation from the sky's space.
+        world_from_light: Mat3,
         /// Where it was described.
         span: Span,
     },

@@ -7,7 +7,7 @@ use sr_sampling::warp::{
 };
 use sr_sampling::{
     AliasTable, Discrete, Distribution, Independent, Invert, Mix2, Mixture, PiecewiseConstant1D,
-    PiecewiseConstant2D, SampleId, Sequence,
+    PiecewiseConstant2D, Plane, Sample, SampleId, Sequence, SummedArea,
 };
 use sr_stats::{Chi2Settings, TestReport, chi2};
 
@@ -113,6 +113,7 @@ pub fn distribution_cases() -> Vec<DistributionCase> {
     directions(&mut cases);
     surfaces(&mut cases);
     tables(&mut cases);
+    windows(&mut cases);
     mixtures(&mut cases);
     cases.0
 }
@@ -209,6 +210,42 @@ fn tables(cases: &mut Cases) {
         let density = PiecewiseConstant2D::new(&values, 24).expect("a table");
         let over_unit = move |d: &PiecewiseConstant2D, settings| chi2::plane(d, unit, settings);
         cases.add_invertible(&format!("piecewise constant 2D, {name}"), density, tolerance, over_unit);
+    }
+}
+
+/// A window together with its table.
+struct WindowOf {
+    table: SummedArea,
+    low: Vec2,
+    high: Vec2,
+}
+
+impl Distribution for WindowOf {
+    type Measure = Plane;
+    type Uniform = Vec2;
+
+    fn sample(&self, u: Vec2) -> Option<Sample<Plane>> {
+        self.table.window(self.low, self.high)?.sample(u)
+    }
+
+    fn pdf(&self, p: Vec2) -> f32 {
+        self.table.window(self.low, self.high).map_or(0.0, |window| window.pdf(p))
+    }
+}
+
+fn windows(cases: &mut Cases) {
+    let mut values: Vec<f32> = (0..24 * 10).map(|i| (i % 11) as f32 + 0.2 * (i % 3) as f32).collect();
+    values[5 * 24 + 7] = 3e3;
+    values[2 * 24..4 * 24].fill(0.0);
+    for (name, low, high) in [
+        ("all", Vec2::ZERO, Vec2::ONE),
+        ("with the bright cell", Vec2::new(0.13, 0.21), Vec2::new(0.5, 0.77)),
+        ("within a cell", Vec2::new(0.51, 0.61), Vec2::new(0.53, 0.69)),
+        ("thin", Vec2::new(0.02, 0.05), Vec2::new(0.97, 0.051)),
+    ] {
+        let table = SummedArea::new(&values, 24).expect("a table");
+        let over_window = move |d: &WindowOf, settings| chi2::plane(d, [low, high], settings);
+        cases.add(&format!("window, {name}"), WindowOf { table, low, high }, over_window);
     }
 }
 

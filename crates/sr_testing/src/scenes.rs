@@ -8,7 +8,7 @@ use std::sync::Arc;
 use glam::{Mat3, Mat4, Vec2, Vec3};
 use sr_scene::{
     CameraDesc, ColorInput, Emission, FilmDesc, FilterDesc, FovAxis, Geometry, Image, LightDesc,
-    MaterialDesc, MaterialId, MeshDesc, Pixels, Rgb, SceneDesc, Settings, ShapeDesc, Span,
+    MaterialDesc, MaterialId, MeshDesc, Pixels, Rgb, SceneDesc, Settings, ShapeDesc, Span, SphereMapping,
 };
 
 /// A scene and its answer.
@@ -87,10 +87,11 @@ fn floor() -> ShapeDesc {
     shape(polygon(&[corner(-9.0, -9.0), corner(9.0, -9.0), corner(9.0, 9.0), corner(-9.0, 9.0)]), None)
 }
 
+/// Of the floor in all scenes made by [`floor_under`].
 const ALBEDO: f32 = 0.6;
 
 /// A floor at z = 0, seen at the origin, under whatever `add` puts above it; direct light only.
-fn floor_under(
+pub(crate) fn floor_under(
     name: &str,
     irradiance: f64,
     albedo_of_lights: f32,
@@ -123,6 +124,7 @@ pub fn known_scenes() -> Vec<KnownScene> {
     all.extend(polygons());
     all.extend(spheres());
     all.extend(skies());
+    all.extend(crate::lights::known_lights());
     all.push(mirror_in_front_of_a_light());
     all
 }
@@ -259,7 +261,10 @@ fn skies() -> Vec<KnownScene> {
             desc.lights.push(LightDesc::Environment {
                 image: 0,
                 scale: 1.0,
+                mapping: SphereMapping::LatLong,
                 world_from_light: Mat3::from_rotation_x(PI / 2.0),
+                mis_compensation: false,
+                portals: Vec::new(),
                 span: Span::default(),
             });
         }),

@@ -1,16 +1,31 @@
 //! Emitters that are not shapes.
 
-use glam::{DMat3, DVec3};
-use sr_scene::{ColorInput, Diagnostic, LightDesc, Rgb};
+use std::sync::Arc;
+
+use glam::{DMat4, DVec3};
+use sr_scene::{ColorInput, Diagnostic, LightDesc, Portal, Rgb, SphereMapping};
 
 use super::Lowering;
 use super::color::Role;
-use super::shape::is_orthonormal;
 use crate::images::Decode;
 use crate::node::Node;
 use crate::props::Props;
+use crate::{files, ies};
 
-const KNOWN: &[&str] = &["area", "constant", "envmap", "point", "directional", "spot"];
+const KNOWN: &[&str] = &[
+    "area",
+    "constant",
+    "envmap",
+    "point",
+    "directional",
+    "spot",
+    "projector",
+    "goniometric",
+    "ies",
+    "sunsky",
+    "sky",
+    "sun",
+];
 
 impl<'a> Lowering<'a, '_> {
     /// An emitter of the scene itself.
@@ -59,6 +74,20 @@ impl<'a> Lowering<'a, '_> {
                 let (cutoff_angle, beam_width) = (cutoff.to_radians(), beam.to_radians());
                 Some(LightDesc::Spot { world_from_light, intensity, cutoff_angle, beam_width, texture, span })
             }
+            "projector" => {
+                let world_from_light = props.transform("to_world", self.d).as_mat4();
+                let irradiance = self.color(&mut props, "irradiance", Rgb::ONE, Role::Emission);
+                let scale = props.float("scale", self.d).unwrap_or(1.0);
+                let (fov_axis, fov) = self.field_of_view(node, &mut props, true);
+                Some(LightDesc::Projector { world_from_light, irradiance, scale, fov_axis, fov, span })
+            }
+            "goniometric" => self.goniometric(node, &mut props),
+            "ies" => self.profile(node, &mut props),
+            "sunsky" | "sky" | "sun" => {
+                let lights = self.sunsky(node, &mut props);
+                self.lights.extend(lights);
+                None
+            }
             _ => {
                 self.unknown_plugin(node, KNOWN, "this light is left out, and the picture is darker");
                 props.use_all();
@@ -72,17 +101,92 @@ impl<'a> Lowering<'a, '_> {
     fn environment(&mut self, node: &'a Node, props: &mut Props<'a>) -> Option<LightDesc> {
         let scale = props.float("scale", self.d).unwrap_or(1.0);
         let to_world = props.transform("to_world", self.d);
-        props.ignore(&["cache", "mis_compensation"]);
+        let mis_compensation = props.boolean("mis_compensation", self.d).unwrap_or(false);
+        props.ignore(&["cache"]);
         props.unsupported(&["gamma"], "8-bit values are read as sRGB", self.d);
-        let linear = DMat3::from_mat4(to_world);
-        let columns = [linear.x_axis, linear.y_axis, linear.z_axis].map(DVec3::normalize_or_zero);
-        let rotation = DMat3::from_cols(columns[0], columns[1], columns[2]);
-        if !is_orthonormal(rotation) {
-            let message = "the transform of an environment is more than a rotation and a scale";
-            self.d.push(Diagnostic::error("mitsuba::bad-transform", &node.span, message));
-        }
+        let mapping = self.sphere_mapping(props);
+        let portals = self.portals(props);
+        let rotation = self.rotation_of(to_world, "an environment", node);
         let image = self.image_of(props, Decode::Linear)?;
-        let world_from_light = rotation.as_mat3();
-        Some(LightDesc::Environment { image, scale, world_from_light, span: node.span.clone() })
+        Some(LightDesc::Environment {
+            image,
+            mapping,
+            scale,
+            world_from_light: rotation?.as_mat3(),
+            mis_compensation,
+            portals,
+            span: node.span.clone(),
+        })
+    }
+
+    fn sphere_mapping(&mut self, props: &mut Props<'a>) -> SphereMapping {
+        match props.string("mapping", self.d) {
+            None | Some(("latlong", _)) => SphereMapping::LatLong,
+            Some(("octahedral", _)) => SphereMapping::EqualAreaOctahedral,
+            Some((other, span)) => {
+                self.unknown_word("mapping", other, &["latlong", "octahedral"], "latlong", span);
+                SphereMapping::LatLong
+            }
+        }
+    }
+
+    /// Rectangles inside an environment, whose normals point into the scene.
+    fn portals(&mut self, props: &mut Props<'a>) -> Vec<Portal> {
+        let mut portals = Vec::new();
+        for node in self.nested(props, "shape") {
+            if node.kind != "rectangle" {
+                self.unknown_plugin(
+                    node,
+                    &["rectangle"],
+                    "this portal is left out, and the picture is noisier",
+                );
+                continue;
+            }
+            let mut props = Props::new(node);
+            let m = props.transform("to_world", self.d);
+            let corner = m.transform_point3(DVec3::new(-1.0, -1.0, 0.0)).as_vec3();
+            let edge = |m: DMat4, v: DVec3| m.transform_vector3(2.0 * v).as_vec3();
+            let mut edges = [edge(m, DVec3::X), edge(m, DVec3::Y)];
+            if props.boolean("flip_normals", self.d).unwrap_or(false) {
+                edges.swap(0, 1);
+            }
+            props.finish(self.d);
+            portals.push(Portal { corner, edges });
+        }
+        portals
+    }
+
+    fn goniometric(&mut self, node: &'a Node, props: &mut Props<'a>) -> Option<LightDesc> {
+        let world_from_light = props.transform("to_world", self.d).as_mat4();
+        let intensity = self.constant_color(props, "intensity", Rgb::ONE, Role::Emission);
+        let mapping = self.sphere_mapping(props);
+        let image = self.image_of(props, Decode::Linear)?;
+        Some(LightDesc::Goniometric { world_from_light, intensity, image, mapping, span: node.span.clone() })
+    }
+
+    fn profile(&mut self, node: &'a Node, props: &mut Props<'a>) -> Option<LightDesc> {
+        let world_from_light = props.transform("to_world", self.d).as_mat4();
+        let intensity = self.constant_color(props, "intensity", Rgb::ONE, Role::Emission);
+        let Some((name, span)) = props.string("filename", self.d) else {
+            let message = format!("{} needs a \"filename\"", node.title());
+            self.d.push(Diagnostic::error("mitsuba::missing-property", &node.span, message));
+            return None;
+        };
+        let path = files::find(name, &self.origin.directories);
+        let read =
+            files::read(&path, ies::MAX_BYTES).and_then(|b| ies::parse(&path.display().to_string(), &b));
+        match read {
+            Ok(profile) => Some(LightDesc::Profile {
+                world_from_light,
+                intensity,
+                profile: Arc::new(profile),
+                span: node.span.clone(),
+            }),
+            Err(reason) => {
+                let error = self.file_error("mitsuba::bad-profile", span, "IES profile", &path, &reason);
+                self.d.push(error);
+                None
+            }
+        }
     }
 }

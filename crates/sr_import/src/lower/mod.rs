@@ -11,6 +11,7 @@ mod principled;
 mod sensor;
 mod settings;
 mod shape;
+mod sunsky;
 mod texture;
 
 use std::collections::{HashMap, HashSet};

@@ -77,7 +77,12 @@ impl<'a> Lowering<'a, '_> {
     }
 
     /// `fov` along `fov_axis`, or a `focal_length` for 36 × 24 mm film.
-    fn field_of_view(&mut self, node: &'a Node, props: &mut Props<'a>, known: bool) -> (FovAxis, f32) {
+    pub(super) fn field_of_view(
+        &mut self,
+        node: &'a Node,
+        props: &mut Props<'a>,
+        known: bool,
+    ) -> (FovAxis, f32) {
         let axis = match props.string("fov_axis", self.d) {
             None | Some(("x", _)) => FovAxis::X,
             Some(("y", _)) => FovAxis::Y,

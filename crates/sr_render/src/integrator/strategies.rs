@@ -244,7 +244,7 @@ impl StrategyTracer {
         is_first: bool,
     ) -> Option<(Rgb, Arrival<'a>)> {
         let Some(hit) = scene.geometry.intersect(ray) else {
-            path.li += beta * scene.lights.environment(ray.direction, |p_light| self.weight(share, p_light));
+            path.li += beta * self.environment(scene, ray, share);
             return None;
         };
         let arrival = Arrival::new(scene, ray, &hit);
@@ -254,11 +254,20 @@ impl StrategyTracer {
         Some((self.emission(scene, ray, &hit, &arrival.surface, share), arrival))
     }
 
+    /// Light from around the scene along a ray that hit nothing, as far as it belongs to the technique that drew the ray.
+    fn environment(&self, scene: &Scene, ray: &Ray, share: Share) -> Rgb {
+        let from = match share {
+            Share::Technique { from, .. } => from,
+            Share::All | Share::Nothing => ray.origin,
+        };
+        scene.lights.environment(from, ray.direction, |p_light| self.weight(share, p_light))
+    }
+
     /// Light emitted by what a ray hit, as far as it belongs to the technique that drew the ray.
     fn emission(&self, scene: &Scene, ray: &Ray, hit: &Hit, surface: &Surface, share: Share) -> Rgb {
         let Some(light) = scene.light_of(hit.shape) else { return Rgb::ZERO };
         let p_light = match share {
-            Share::Technique { from, .. } => scene.lights.pdf_of_point(light, from, surface),
+            Share::Technique { from, .. } => scene.lights.pdf_of_point(light, from, surface, hit.primitive),
             Share::All | Share::Nothing => 0.0,
         };
         scene.lights.emitted(light, surface, -ray.direction, &scene.textures) * self.weight(share, p_light)
@@ -365,7 +374,7 @@ impl StrategyTracer {
     /// Light found at the end of a ray that does not go on.
     fn light_along(&self, scene: &Scene, ray: &Ray, share: Share) -> Rgb {
         match scene.geometry.intersect(ray) {
-            None => scene.lights.environment(ray.direction, |p_light| self.weight(share, p_light)),
+            None => self.environment(scene, ray, share),
             Some(hit) => self.emission(scene, ray, &hit, &scene.geometry.surface(ray, &hit), share),
         }
     }

@@ -208,7 +208,7 @@ impl Lights {
         for i in 0..count {
             let mut is_piece = false;
             if let Some((id, pmf, rest)) = self.pick(u_pick[i])
-                && let Some(piece) = self.piece(id, rest, u.get(i))
+                && let Some(piece) = self.piece(id, from.get(i), rest, u.get(i))
             {
                 samples.take(i, &piece, pmf, id);
                 is_piece = true;

@@ -7,8 +7,8 @@ use sr_scene::Rgb;
 
 use super::area::Piece;
 use super::{
-    AreaLight, ConstantEnvironment, DeltaSample, DirectionalLight, Environment, LightSample, PointLight,
-    SeenFrom, SpotLight,
+    AreaLight, ConstantEnvironment, DeltaSample, DirectionalLight, Environment, GoniometricLight,
+    LightSample, PointLight, ProfileLight, Projector, SeenFrom, Sky, SpotLight, Sun,
 };
 use crate::texture::{Textures, luminance};
 
@@ -22,6 +22,33 @@ pub(crate) enum Extended {
     Area(AreaLight),
     Constant(ConstantEnvironment),
     Environment(Environment),
+    Sky(Sky),
+    Sun(Sun),
+}
+
+impl Extended {
+    /// Radiance along `wi` of a light infinitely far away, and the density with which it is sampled from `from`, in sr⁻¹.
+    #[inline(always)]
+    fn seen_along(&self, from: Vec3, wi: Vec3) -> (Rgb, f32) {
+        match self {
+            Self::Area(_) => (Rgb::ZERO, 0.0),
+            Self::Constant(constant) => (constant.radiance, constant.pdf()),
+            Self::Environment(environment) => environment.seen_along(from, wi),
+            Self::Sky(sky) => (sky.radiance(wi), sky.pdf(wi)),
+            Self::Sun(sun) => (sun.radiance(wi), sun.pdf(wi)),
+        }
+    }
+
+    /// The mean radiance, over all directions, of a light infinitely far away.
+    fn mean_radiance(&self) -> Rgb {
+        match self {
+            Self::Area(_) => Rgb::ZERO,
+            Self::Constant(constant) => constant.radiance,
+            Self::Environment(environment) => environment.mean_radiance(),
+            Self::Sky(sky) => sky.mean_radiance(),
+            Self::Sun(sun) => sun.mean_radiance(),
+        }
+    }
 }
 
 /// A light without one.
@@ -30,6 +57,9 @@ pub(crate) enum Delta {
     Point(PointLight),
     Directional(DirectionalLight),
     Spot(SpotLight),
+    Projector(Projector),
+    Goniometric(GoniometricLight),
+    Profile(ProfileLight),
 }
 
 /// The lights of a scene.
@@ -85,22 +115,27 @@ impl Lights {
         emitters: Geometry,
         light_of_emitter: Vec<LightId>,
         scene_radius: f32,
+        textures: &Textures,
     ) -> Self {
         let flux = |radiance: Rgb| {
             4.0 * std::f32::consts::PI * std::f32::consts::PI * scene_radius * scene_radius * radiance
         };
+        // What a texture with impossible values emits must not keep all others from being chosen.
+        let weight = |power: Rgb| luminance(power).clamp(0.0, MOST_POWER).max(0.0);
         let extended_power = |light: &Extended| {
-            luminance(match light {
+            weight(match light {
                 Extended::Area(area) => area.power(),
-                Extended::Constant(constant) => flux(constant.radiance),
-                Extended::Environment(environment) => flux(environment.mean_radiance()),
+                far => flux(far.mean_radiance()),
             })
         };
         let delta_power = |light: &Delta| {
-            luminance(match light {
+            weight(match light {
                 Delta::Point(point) => point.power(),
                 Delta::Directional(directional) => directional.power(scene_radius),
                 Delta::Spot(spot) => spot.power(),
+                Delta::Projector(projector) => projector.power(textures),
+                Delta::Goniometric(light) => light.power(),
+                Delta::Profile(light) => light.power(),
             })
         };
         let ids = (0..extended.len() as u32).map(LightId);
@@ -153,21 +188,23 @@ impl Lights {
 
     /// A piece of a light that shines alike everywhere, or of the image around the scene; `None` for other lights.
     #[inline(always)]
-    pub(super) fn piece(&self, id: LightId, u_pick: f32, u: Vec2) -> Option<Piece> {
+    pub(super) fn piece(&self, id: LightId, from: Vec3, u_pick: f32, u: Vec2) -> Option<Piece> {
         match &self.extended[id.0 as usize] {
-            Extended::Area(area) => area.piece(u_pick),
-            Extended::Environment(sky) if self.environments.len() == 1 => sky.sample_image(u).map(Piece::Sky),
-            Extended::Constant(_) | Extended::Environment(_) => None,
+            Extended::Area(area) => area.piece(from, u_pick),
+            Extended::Environment(sky) if self.environments.len() == 1 && sky.is_plain() => {
+                sky.sample_image(u).map(Piece::Sky)
+            }
+            _ => None,
         }
     }
 
-    /// The image around the scene, if there is one and no other light is around it.
+    /// The image around the scene, if there is one, of latitudes and longitudes, and no other light is around it.
     #[inline(always)]
     pub(super) fn sky(&self) -> Option<&Environment> {
         match &self.environments[..] {
             &[LightId(id)] => match &self.extended[id as usize] {
-                Extended::Environment(sky) => Some(sky),
-                Extended::Area(_) | Extended::Constant(_) => None,
+                Extended::Environment(sky) if sky.is_plain() => Some(sky),
+                _ => None,
             },
             _ => None,
         }
@@ -194,7 +231,9 @@ impl Lights {
         match &self.extended[id.0 as usize] {
             Extended::Area(area) => area.sample(id, from, u_pick, u),
             Extended::Constant(constant) => constant.sample(id, u),
-            Extended::Environment(environment) => environment.sample(id, u),
+            Extended::Environment(environment) => environment.sample(id, from, u),
+            Extended::Sky(sky) => sky.sample(id, u),
+            Extended::Sun(sun) => sun.sample(id, u),
         }
     }
 
@@ -205,6 +244,8 @@ impl Lights {
             Extended::Area(area) => area.radiance(s, textures),
             Extended::Constant(constant) => constant.radiance,
             Extended::Environment(environment) => environment.radiance_at(s.uv),
+            Extended::Sky(sky) => sky.radiance(s.wi),
+            Extended::Sun(sun) => sun.radiance(s.wi),
         }
     }
 
@@ -216,6 +257,9 @@ impl Lights {
             Delta::Point(point) => point.sample(from)?,
             Delta::Directional(directional) => directional.sample(),
             Delta::Spot(spot) => spot.sample(from, textures)?,
+            Delta::Projector(projector) => projector.sample(from, textures)?,
+            Delta::Goniometric(light) => light.sample(from)?,
+            Delta::Profile(light) => light.sample(from)?,
         };
         s.radiance /= pmf;
         Some(s)
@@ -226,16 +270,17 @@ impl Lights {
     pub fn emitted(&self, id: LightId, surface: &Surface, w: Vec3, textures: &Textures) -> Rgb {
         match &self.extended[id.0 as usize] {
             Extended::Area(area) => area.emitted(surface.ng, surface.uv, w, textures),
-            Extended::Constant(_) | Extended::Environment(_) => Rgb::ZERO,
+            _ => Rgb::ZERO,
         }
     }
 
-    /// The density, in sr⁻¹, with which `sample` reaches the point `surface` of an area light.
+    /// The density, in sr⁻¹, with which `sample` reaches the point `surface` of an area light, on triangle `primitive`
+    /// of its mesh.
     #[inline]
-    pub fn pdf_of_point(&self, id: LightId, from: Vec3, surface: &Surface) -> f32 {
+    pub fn pdf_of_point(&self, id: LightId, from: Vec3, surface: &Surface, primitive: u32) -> f32 {
         match &self.extended[id.0 as usize] {
-            Extended::Area(area) => self.pmf(id) * area.pdf(from, surface.p, surface.ng),
-            Extended::Constant(_) | Extended::Environment(_) => 0.0,
+            Extended::Area(area) => self.pmf(id) * area.pdf(from, surface.p, surface.ng, primitive),
+            _ => 0.0,
         }
     }
 
@@ -246,16 +291,12 @@ impl Lights {
     }
 
     /// Radiance of all environments along `wi`, each multiplied by `weight` of the density with which
-    /// `sample` draws `wi` from it.
+    /// `sample` draws `wi` from it at `from`.
     #[inline]
-    pub fn environment(&self, wi: Vec3, weight: impl Fn(f32) -> f32) -> Rgb {
+    pub fn environment(&self, from: Vec3, wi: Vec3, weight: impl Fn(f32) -> f32) -> Rgb {
         let mut sum = Rgb::ZERO;
         for &id in &self.environments {
-            let (radiance, pdf) = match &self.extended[id.0 as usize] {
-                Extended::Constant(constant) => (constant.radiance, constant.pdf()),
-                Extended::Environment(environment) => environment.seen_along(wi),
-                Extended::Area(_) => continue,
-            };
+            let (radiance, pdf) = self.extended[id.0 as usize].seen_along(from, wi);
             sum += radiance * weight(self.pmf(id) * pdf);
         }
         sum
@@ -263,8 +304,8 @@ impl Lights {
 
     /// [`Lights::environment`] under the power heuristic against one other technique.
     #[inline]
-    pub(crate) fn environment_by_power(&self, wi: Vec3, other_pdf: f32) -> Rgb {
-        self.environment(wi, |p_light| power_weight(other_pdf, p_light))
+    pub(crate) fn environment_by_power(&self, from: Vec3, wi: Vec3, other_pdf: f32) -> Rgb {
+        self.environment(from, wi, |p_light| power_weight(other_pdf, p_light))
     }
 
     /// The density over directions of one light, or of all, as seen from a point.
@@ -278,12 +319,7 @@ impl Lights {
         let weight = |id: LightId| if only.is_some() { 1.0 } else { self.pmf(id) };
         let mut sum = 0.0;
         for &id in self.environments.iter().filter(|&&id| counts(id)) {
-            sum += weight(id)
-                * match &self.extended[id.0 as usize] {
-                    Extended::Constant(constant) => constant.pdf(),
-                    Extended::Environment(environment) => environment.pdf(wi),
-                    Extended::Area(_) => 0.0,
-                };
+            sum += weight(id) * self.extended[id.0 as usize].seen_along(from, wi).1;
         }
         let mut ray = sr_geometry::Ray { origin: from, direction: wi, t_max: f32::INFINITY };
         for _ in 0..MAX_CROSSINGS {
@@ -294,13 +330,16 @@ impl Lights {
             if let Extended::Area(area) = &self.extended[id.0 as usize]
                 && counts(id)
             {
-                sum += weight(id) * area.pdf(from, surface.p, surface.ng);
+                sum += weight(id) * area.pdf(from, surface.p, surface.ng, hit.primitive);
             }
             ray = surface.spawn_ray(wi);
         }
         sum
     }
 }
+
+/// Lights of more power are chosen as if they had this: sums of it are finite.
+const MOST_POWER: f32 = 1e30;
 
 /// More emitting layers than this along one direction are not counted: no scene has them, and a
 /// broken mesh must not hang the renderer.

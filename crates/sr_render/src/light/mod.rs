@@ -5,17 +5,24 @@
 //!
 //! - [`AreaLight`]: a mesh, a sphere or a disk that shines.
 //! - [`Environment`]: an image around the scene; [`ConstantEnvironment`]: the same radiance from everywhere.
-//! - [`PointLight`], [`SpotLight`], [`DirectionalLight`]: deltas, which only light sampling can find.
+//! - [`Sky`] and [`Sun`]: those of a clear day.
+//! - [`PointLight`], [`SpotLight`], [`DirectionalLight`], [`Projector`], [`GoniometricLight`], [`ProfileLight`]: deltas,
+//!   which only light sampling can find.
 //! - [`Lights`]: all of them, and the choice among them.
 //!
 //! Invariant: `pdf` is the density with which `sample` draws a direction, lights behind others included.
 
 mod area;
 mod batch;
+mod compile;
 mod environment;
 mod list;
 mod point;
+mod portal;
+mod projector;
 mod seen_from;
+mod sky;
+mod sphere_image;
 
 use glam::{Vec2, Vec3};
 use sr_scene::Rgb;
@@ -23,11 +30,14 @@ use sr_scene::Rgb;
 pub use area::AreaLight;
 pub(crate) use area::Triangle;
 pub(crate) use batch::{DeltaSamples, LightSamples};
-pub use environment::{ConstantEnvironment, Environment};
+pub(crate) use compile::{Compiled, compile_light};
+pub use environment::{ConstantEnvironment, Environment, EnvironmentSampling};
 pub(crate) use list::{Delta, Extended};
 pub use list::{LightId, Lights};
 pub use point::{DirectionalLight, PointLight, SpotLight};
+pub use projector::{GoniometricLight, ProfileLight, Projector};
 pub use seen_from::SeenFrom;
+pub use sky::{Sky, Sun};
 
 /// A sampled direction towards a light with an extent. What arrives along it, [`Lights::radiance`] tells: it may cost
 /// a look at a picture, which a light that turns out to be hidden is not worth.

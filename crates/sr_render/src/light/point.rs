@@ -114,7 +114,8 @@ impl SpotLight {
     }
 }
 
-fn towards(position: Vec3, p: Vec3, intensity: impl Fn(Vec3) -> Rgb) -> Option<DeltaSample> {
+/// Light from `position` at `p`: the intensity in that direction over the squared distance.
+pub(super) fn towards(position: Vec3, p: Vec3, intensity: impl Fn(Vec3) -> Rgb) -> Option<DeltaSample> {
     let to_light = position - p;
     let distance_squared = to_light.length_squared();
     (distance_squared > 0.0).then(|| {

@@ -54,11 +54,11 @@ pub(super) fn gather_light<Q: Sequence>(
 
 #[inline(never)]
 fn environment<Q: Sequence>(scene: &Scene, paths: &Paths<Q>, i: usize) -> Rgb {
-    let (direction, pdf) = (paths.rays.direction.get(i), paths.pdf[i]);
+    let (from, direction, pdf) = (paths.from.get(i), paths.rays.direction.get(i), paths.pdf[i]);
     if pdf == f32::INFINITY {
-        scene.lights.environment(direction, |_| 1.0)
+        scene.lights.environment(from, direction, |_| 1.0)
     } else {
-        scene.lights.environment_by_power(direction, pdf)
+        scene.lights.environment_by_power(from, direction, pdf)
     }
 }
 
@@ -72,7 +72,7 @@ fn emitted<Q: Sequence>(scene: &Scene, paths: &Paths<Q>, at: &Vertices, i: usize
     if le == Rgb::ZERO || pdf == f32::INFINITY {
         return le;
     }
-    le * power_weight(pdf, scene.lights.pdf_of_point(light, paths.from.get(i), &surface))
+    le * power_weight(pdf, scene.lights.pdf_of_point(light, paths.from.get(i), &surface, hit.primitive))
 }
 
 /// Finds out which side of which material is seen, and lets vertices wait for the loops that serve them. Lambertian
