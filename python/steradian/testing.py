@@ -80,8 +80,9 @@ def chi2(over: Distribution, *, n: int = 1 << 18, cells: int = 512, seed: int = 
     - ``over``: on the line, in a box, over directions or indices; built-in, or a subclass of your own.
     - ``n``: samples that are counted. ``cells``: about so many; they hold about equally many samples. In
       each, the density is integrated by points of its own, and the error of that counts as well. In many
-      dimensions a cell is cut along some axes only, so that a mistake between others can hide: test the
-      factors of a product as well.
+      dimensions a cell is cut along some axes only, so that a mistake between others can hide, and if
+      coordinates hang together closely few of these points count: then mistakes must be larger to be seen.
+      Test the factors of a product as well.
     - ``seed``: of the samples, 0 to 2^64 − 1.
 
     Certainly wrong, whatever the counts: a density that is negative, infinite or NaN; samples where it is 0;

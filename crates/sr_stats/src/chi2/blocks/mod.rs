@@ -365,4 +365,60 @@ mod tests {
             }
         }
     }
+
+    /// Exponential with rate 1 in each coordinate, said to have another rate in the first.
+    struct Exponentials {
+        dim: usize,
+        rate: f64,
+    }
+
+    impl Blocks for Exponentials {
+        type Error = std::convert::Infallible;
+
+        fn dim(&self) -> usize {
+            self.dim
+        }
+
+        fn uniforms(&self) -> usize {
+            self.dim
+        }
+
+        fn support(&self) -> Vec<[f64; 2]> {
+            vec![[0.0, f64::INFINITY]; self.dim]
+        }
+
+        fn sample(&mut self, u: &[f64], x: &mut [f64], pdf: &mut [f64]) -> Result<(), Self::Error> {
+            x.iter_mut().zip(u).for_each(|(x, u)| *x = -(-u).ln_1p());
+            self.pdf(x, pdf)
+        }
+
+        fn pdf(&mut self, x: &[f64], pdf: &mut [f64]) -> Result<(), Self::Error> {
+            let n = pdf.len();
+            for i in 0..n {
+                let sum: f64 = x[i..].iter().step_by(n).sum();
+                pdf[i] = if x[i..].iter().step_by(n).all(|x| *x >= 0.0) {
+                    self.rate * (-sum - (self.rate - 1.0) * x[i]).exp()
+                } else {
+                    0.0
+                };
+            }
+            Ok(())
+        }
+    }
+
+    /// Pieces beyond the samples once took all reference points of many axes, and false alarms were certain.
+    #[test]
+    fn many_dimensions_raise_no_alarm() {
+        let run = |dim: usize, rate: f64, seed: u64| {
+            let settings = Chi2Settings { samples: 1 << 14, bins: (16, 16), seed };
+            match real(&mut Exponentials { dim, rate }, settings) {
+                Ok(report) => report,
+                Err(never) => match never {},
+            }
+        };
+        let right = run(80, 1.0, 0);
+        assert!(right.passes(1e-3), "{right}");
+        let wrong = run(80, 1.3, 0);
+        assert!(!wrong.passes(1e-4), "{wrong}");
+    }
 }
