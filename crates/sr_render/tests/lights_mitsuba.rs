@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{Affine2, Mat3, Mat4, Vec3};
 use sr_render::Scene;
-use sr_render::light::Sky;
+use sr_render::light::{Sky, Sun};
 use sr_scene::{
     ColorInput, Filter, FovAxis, Image, LightDesc, Pixels, Rgb, SceneDesc, Span, TextureDesc, TextureId, Wrap,
 };
@@ -105,5 +105,17 @@ fn skies() {
         let (radiance, expected) = (sky.radiance(Vec3::from(wi).normalize()), Rgb::from(expected));
         let error = ((radiance - expected) / expected).abs().max_element();
         assert!(error < 1e-4, "turbidity {turbidity}, {wi:?}: {radiance}, not {expected}");
+    }
+}
+
+#[test]
+fn suns() {
+    for (degrees, expected) in
+        [(4.0_f32, [22_175.9, 18_777.48, 14_846.32]), (40.0, [21_580.83, 17_872.0, 13_411.88])]
+    {
+        let direction = Vec3::new(degrees.to_radians().sin(), 0.0, degrees.to_radians().cos());
+        let sun = Sun::new(3.0, direction, 1.0, 0.5358_f32.to_radians(), Mat3::IDENTITY);
+        let error = (sun.radiance(direction) / Rgb::from(expected) - 1.0).abs().max_element();
+        assert!(error < 1e-5, "{degrees}: {}, not {expected:?}", sun.radiance(direction));
     }
 }

@@ -23,6 +23,8 @@ pub struct KnownScene {
     /// Does `light` alone have a finite variance? Not where shining walls meet: sampled by area, they are
     /// ever closer to the points of a corner.
     pub light_alone_converges: bool,
+    /// Is the light so large that a direction chosen without regard to it finds it often enough?
+    pub found_by_chance: bool,
 }
 
 /// A camera at `from` that sees nothing but the point `at`.
@@ -104,7 +106,13 @@ pub(crate) fn floor_under(
         .push(MaterialDesc::Diffuse { reflectance: ColorInput::Constant(Rgb::splat(albedo_of_lights)) });
     add(&mut desc);
     let radiance = f64::from(ALBEDO) / std::f64::consts::PI * irradiance;
-    KnownScene { name: name.into(), desc, radiance: Rgb::splat(radiance as f32), light_alone_converges: true }
+    KnownScene {
+        name: name.into(),
+        desc,
+        radiance: Rgb::splat(radiance as f32),
+        light_alone_converges: true,
+        found_by_chance: true,
+    }
 }
 
 /// Irradiance at the origin, on a floor facing +Z, from a polygon of unit radiance: Lambert's formula,
@@ -139,6 +147,7 @@ fn furnace_sphere() -> KnownScene {
         desc,
         radiance: Rgb::splat(2.0),
         light_alone_converges: true,
+        found_by_chance: true,
     }
 }
 
@@ -162,6 +171,7 @@ fn furnace_box() -> KnownScene {
         desc,
         radiance: Rgb::splat(1.0 / 0.7),
         light_alone_converges: false,
+        found_by_chance: true,
     }
 }
 
@@ -176,6 +186,7 @@ fn white_furnace() -> KnownScene {
         desc,
         radiance: Rgb::ONE,
         light_alone_converges: true,
+        found_by_chance: true,
     }
 }
 

@@ -22,7 +22,7 @@ const PARAMETERS: usize = 9;
 /// Zenith angles of the sun in the tables.
 const SUN_ANGLES: usize = 30;
 /// The first and the last of them, in degrees.
-const SUN_ANGLE_RANGE: [f32; 2] = [2.0, 88.0];
+const SUN_ANGLE_RANGE: [f32; 2] = [1.0, 88.0];
 /// What a unit of the tables is: 1 over the integral of the CIE's ȳ, in nm, which is how Mitsuba normalises spectra.
 const UNIT: f32 = 1.0 / 106.750_26;
 
