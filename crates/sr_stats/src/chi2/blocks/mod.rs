@@ -209,6 +209,13 @@ fn expected<B: Blocks>(
         cells[leaf.cell].expected += n * mean;
         cells[leaf.cell].variance += n * n * variance;
     }
+    // Of a density that hangs together in many dimensions few points of many count, and cells that have none of them have
+    // too small a mean and too small a variance. What all cells say together is the better measure.
+    let variance: f64 = cells.iter().map(|cell| cell.variance).sum();
+    let squares: f64 = cells.iter().map(|cell| cell.expected.powi(2)).sum();
+    let typical = if squares > 0.0 && variance.is_finite() { variance / squares } else { 0.0 };
+    let size = n / cells.len() as f64;
+    cells.iter_mut().for_each(|cell| cell.variance = cell.variance.max(typical * size * size));
     Ok(cells)
 }
 
