@@ -4,8 +4,9 @@ use glam::{Vec2, Vec3};
 
 use crate::{
     Blend, Bsdf, BsdfSample, CoatedConductor, CompensatedConductor, CompensatedDielectric, Conductor,
-    Dielectric, Diffuse, DiffuseTransmission, Eon, Lobes, Mask, MicrofacetShape, OrenNayar, Plastic,
-    Principled, PrincipledThin, Rgb, RoughConductor, RoughDielectric, RoughPlastic, ThinDielectric,
+    Dielectric, Diffuse, DiffuseTransmission, Eon, Lobes, Mask, MetallicRoughness, MicrofacetShape,
+    OrenNayar, Plastic, Principled, PrincipledThin, Rgb, RoughConductor, RoughDielectric, RoughPlastic,
+    ThinDielectric,
 };
 
 /// Declares an enum of models, and hands its questions on to them. Those marked `from` also convert into it.
@@ -90,6 +91,8 @@ any! {
     CoatedConductor(CoatedConductor<'a>), from;
     /// Metals, plastics, cloth, rough glass.
     Principled(Principled), from;
+    /// glTF's material.
+    MetallicRoughness(MetallicRoughness), from;
     /// Leaves, paper, frosted panes.
     PrincipledThin(PrincipledThin), from;
 }

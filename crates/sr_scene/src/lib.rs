@@ -22,7 +22,8 @@ pub use diagnostic::{Diagnostic, Diagnostics, Severity, SourceId, Sources, Span}
 pub use image::{Image, Pixels};
 pub use light::{LightDesc, MAX_PORTALS, Portal, SphereMapping};
 pub use material::{
-    ColorInput, MaterialDesc, MicrofacetKind, PrincipledDesc, PrincipledThinDesc, ScalarInput, Tilting,
+    ColorInput, MaterialDesc, MetallicRoughnessDesc, MicrofacetKind, PrincipledDesc, PrincipledThinDesc,
+    ScalarInput, Tilting,
 };
 pub use profile::IntensityProfile;
 pub use shape::{Emission, Geometry, GroupDesc, InstanceDesc, MeshDesc, ShapeDesc};

@@ -158,6 +158,8 @@ pub enum MaterialDesc {
     Principled(PrincipledDesc),
     /// Burley's model of a thin surface.
     PrincipledThin(PrincipledThinDesc),
+    /// The metallic-roughness material of glTF 2.0.
+    MetallicRoughness(MetallicRoughnessDesc),
     /// One model on each side of the surface.
     TwoSided {
         /// Seen from the side of the normal.
@@ -273,4 +275,37 @@ pub struct PrincipledThinDesc {
     pub diff_trans: ScalarInput,
     /// How often specular reflection and transmission, diffuse reflection and transmission are sampled, relatively.
     pub rates: [f32; 4],
+}
+
+/// What a metallic-roughness material is made from. Numbers are in [0, 1] unless it says otherwise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MetallicRoughnessDesc {
+    /// Of the base, of metals, of what is transmitted.
+    pub base_color: ColorInput,
+    /// From dielectric to metal.
+    pub metallic: ScalarInput,
+    /// Its square is α.
+    pub roughness: ScalarInput,
+    /// Strength of the dielectric reflection.
+    pub specular: ScalarInput,
+    /// Its colour; may exceed 1.
+    pub specular_color: ColorInput,
+    /// Index of refraction, at least 1.
+    pub ior: f32,
+    /// Strength of a coat.
+    pub clearcoat: ScalarInput,
+    /// Its roughness.
+    pub clearcoat_roughness: ScalarInput,
+    /// Colour of a layer of fibres.
+    pub sheen_color: ColorInput,
+    /// Its roughness.
+    pub sheen_roughness: ScalarInput,
+    /// Of the dielectric's base, how much transmits.
+    pub transmission: ScalarInput,
+    /// Is it a thin sheet, which does not bend light?
+    pub thin: bool,
+    /// Stretches highlights.
+    pub anisotropy: ScalarInput,
+    /// Along which direction from the tangent, in radians.
+    pub anisotropy_rotation: f32,
 }

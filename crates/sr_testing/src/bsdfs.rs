@@ -73,9 +73,10 @@ pub fn is_reciprocal(name: &str) -> bool {
 }
 
 /// The most light that a model of this name may return for each unit that it receives. Burley's models add lobes without
-/// taking from others what these reflect.
+/// taking from others what these reflect; glTF's takes by Fresnel's factor at the half vector, which is too little at
+/// grazing angles.
 pub fn energy_limit(name: &str) -> f64 {
-    if name.contains("principled") { 1.7 } else { 1.0 }
+    if name.contains("principled") || name.starts_with("glTF") { 1.7 } else { 1.0 }
 }
 
 /// All models, named.

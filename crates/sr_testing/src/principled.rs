@@ -1,6 +1,9 @@
 //! The principled models, a parameter or a few at a time at either end.
 
-use sr_bsdf::{AnyBsdf, Principled, PrincipledInputs, PrincipledThin, PrincipledThinInputs};
+use sr_bsdf::{
+    AnyBsdf, MetallicRoughness, MetallicRoughnessInputs, Principled, PrincipledInputs, PrincipledThin,
+    PrincipledThinInputs, Rgb,
+};
 
 use crate::bsdfs::{GREEN, PINK};
 
@@ -60,5 +63,46 @@ pub(crate) fn models() -> Vec<(String, AnyBsdf<'static>)> {
     let full = inputs.map(|(name, inputs)| (format!("principled {name}"), Principled::new(inputs).into()));
     let thin =
         thin_inputs.map(|(name, i)| (format!("thin principled {name}"), PrincipledThin::new(i).into()));
-    full.into_iter().chain(thin).collect()
+    full.into_iter().chain(thin).chain(metallic_roughness()).collect()
+}
+
+fn metallic_roughness() -> Vec<(String, AnyBsdf<'static>)> {
+    let metal = MetallicRoughnessInputs { base_color: GREEN, roughness: 0.5, ..Default::default() };
+    let plastic = MetallicRoughnessInputs { metallic: 0.0, ..metal };
+    let glass = MetallicRoughnessInputs { transmission: 1.0, base_color: PINK, ..plastic };
+    let inputs = [
+        ("metal", metal),
+        ("rough", MetallicRoughnessInputs { roughness: 1.0, ..metal }),
+        (
+            "turned",
+            MetallicRoughnessInputs { anisotropy: 0.7, anisotropy_rotation: 0.6, roughness: 0.4, ..metal },
+        ),
+        ("plastic", plastic),
+        ("no gloss", MetallicRoughnessInputs { specular: 0.0, ..plastic }),
+        ("tinted", MetallicRoughnessInputs { specular_color: Rgb::new(2.0, 0.5, 0.1), ior: 1.8, ..plastic }),
+        (
+            "coated",
+            MetallicRoughnessInputs { clearcoat: 1.0, clearcoat_roughness: 0.4, metallic: 0.5, ..metal },
+        ),
+        ("fibres", MetallicRoughnessInputs { sheen_color: PINK, sheen_roughness: 0.5, ..plastic }),
+        ("pane", glass),
+        ("glass", MetallicRoughnessInputs { is_thin: false, ..glass }),
+        (
+            "all",
+            MetallicRoughnessInputs {
+                metallic: 0.3,
+                clearcoat: 0.5,
+                clearcoat_roughness: 0.5,
+                sheen_color: 0.5 * GREEN,
+                sheen_roughness: 0.7,
+                transmission: 0.6,
+                is_thin: false,
+                anisotropy: 0.5,
+                anisotropy_rotation: -1.0,
+                ..plastic
+            },
+        ),
+    ];
+    let named = |(name, inputs)| (format!("glTF {name}"), MetallicRoughness::new(inputs).into());
+    inputs.map(named).into()
 }

@@ -38,8 +38,10 @@ fn uniform_sphere(u: Vec2) -> Vec3 {
 /// The index of refraction on the other side of the surface, over that on the side of `wo`.
 fn index_beyond(bsdf: &AnyBsdf, wo: Vec3) -> f32 {
     let eta_from = |wo| (0..200).filter_map(|i| sample(bsdf, wo, i)).map(|s| s.eta).find(|&eta| eta != 1.0);
-    // Where reflection is all but total, the other side knows.
-    eta_from(wo).or_else(|| eta_from(-wo).map(|eta| 1.0 / eta)).unwrap_or(1.0)
+    // Where reflection is all but total, the other side knows, or the normal.
+    let along_normal = Vec3::Z * wo.z.signum();
+    let other_side = || eta_from(-wo).map(|eta| 1.0 / eta);
+    eta_from(wo).or_else(other_side).or_else(|| eta_from(along_normal)).unwrap_or(1.0)
 }
 
 #[test]

@@ -24,6 +24,7 @@ const KNOWN: &[&str] = &[
     "diffusetransmission",
     "principled",
     "principledthin",
+    "metallicroughness",
     "twosided",
     "mask",
     "blendbsdf",
@@ -133,6 +134,7 @@ impl<'a> Lowering<'a, '_> {
             },
             "principled" => self.principled(props),
             "principledthin" => self.principled_thin(props),
+            "metallicroughness" => self.metallic_roughness(props),
             "twosided" => {
                 let nested = self.nested(props, "bsdf");
                 match nested[..] {

@@ -2,7 +2,9 @@
 
 use std::f32::consts::FRAC_1_SQRT_2;
 
-use sr_scene::{Diagnostic, MaterialDesc, PrincipledDesc, PrincipledThinDesc, Rgb, ScalarInput};
+use sr_scene::{
+    Diagnostic, MaterialDesc, MetallicRoughnessDesc, PrincipledDesc, PrincipledThinDesc, Rgb, ScalarInput,
+};
 
 use super::Lowering;
 use super::material::GREY;
@@ -55,6 +57,26 @@ impl<'a> Lowering<'a, '_> {
                 self.rate(props, "diffuse_reflectance_sampling_rate"),
                 self.rate(props, "diffuse_transmittance_sampling_rate"),
             ],
+        })
+    }
+
+    /// glTF's names and defaults, in the style of the others; the angle is in degrees.
+    pub(super) fn metallic_roughness(&mut self, props: &mut Props<'a>) -> MaterialDesc {
+        MaterialDesc::MetallicRoughness(MetallicRoughnessDesc {
+            base_color: self.factor(props, "base_color", Rgb::ONE),
+            metallic: self.scalar(props, "metallic", 1.0),
+            roughness: self.scalar(props, "roughness", 1.0),
+            specular: self.scalar(props, "specular", 1.0),
+            specular_color: self.factor(props, "specular_color", Rgb::ONE),
+            ior: props.float("ior", self.d).unwrap_or(1.5),
+            clearcoat: self.scalar(props, "clearcoat", 0.0),
+            clearcoat_roughness: self.scalar(props, "clearcoat_roughness", 0.0),
+            sheen_color: self.factor(props, "sheen_color", Rgb::ZERO),
+            sheen_roughness: self.scalar(props, "sheen_roughness", 0.0),
+            transmission: self.scalar(props, "transmission", 0.0),
+            thin: props.boolean("thin", self.d).unwrap_or(true),
+            anisotropy: self.scalar(props, "anisotropy", 0.0),
+            anisotropy_rotation: props.float("anisotropy_rotation", self.d).unwrap_or(0.0).to_radians(),
         })
     }
 

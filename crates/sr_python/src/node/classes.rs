@@ -22,6 +22,7 @@ const CLASSES: &[(&str, &[&str])] = &[
             "diffusetransmission",
             "principled",
             "principledthin",
+            "metallicroughness",
             "blendbsdf",
             "bumpmap",
             "normalmap",

@@ -2,10 +2,11 @@
 
 use sr_bsdf::{
     AlbedoTable, AnyModel, CoatedConductor, CoatedConductorTables, CompensatedConductor,
-    CompensatedDielectric, DielectricTables, DiffuseTransmission, Eon, Microfacet, MicrofacetKind, OrenNayar,
-    Principled, PrincipledInputs, PrincipledThin, PrincipledThinInputs, Rgb,
+    CompensatedDielectric, DielectricTables, DiffuseTransmission, Eon, MetallicRoughness,
+    MetallicRoughnessInputs, Microfacet, MicrofacetKind, OrenNayar, Principled, PrincipledInputs,
+    PrincipledThin, PrincipledThinInputs, Rgb,
 };
-use sr_scene::{ColorInput, PrincipledDesc, PrincipledThinDesc, ScalarInput};
+use sr_scene::{ColorInput, MetallicRoughnessDesc, PrincipledDesc, PrincipledThinDesc, ScalarInput};
 
 use super::parts::{ModelSource, Place};
 
@@ -44,6 +45,7 @@ pub(super) enum Uncommon {
     },
     Principled(PrincipledDesc),
     PrincipledThin(PrincipledThinDesc),
+    MetallicRoughness(MetallicRoughnessDesc),
 }
 
 /// What is the same at every point of uncommon models, shared by all that have the same.
@@ -87,6 +89,7 @@ impl Uncommon {
         match self {
             Uncommon::Principled(p) => p.anisotropic != ScalarInput::Constant(0.0),
             Uncommon::PrincipledThin(p) => p.anisotropic != ScalarInput::Constant(0.0),
+            Uncommon::MetallicRoughness(m) => m.anisotropy != ScalarInput::Constant(0.0),
             _ => false,
         }
     }
@@ -131,6 +134,23 @@ impl Uncommon {
                 clearcoat: at.scalar(p.clearcoat),
                 clearcoat_gloss: at.scalar(p.clearcoat_gloss),
                 rates: p.rates,
+            })
+            .into(),
+            Uncommon::MetallicRoughness(ref m) => MetallicRoughness::new(MetallicRoughnessInputs {
+                base_color: at.color(m.base_color),
+                metallic: at.scalar(m.metallic),
+                roughness: at.scalar(m.roughness),
+                specular: at.scalar(m.specular),
+                specular_color: at.color(m.specular_color),
+                ior: m.ior,
+                clearcoat: at.scalar(m.clearcoat),
+                clearcoat_roughness: at.scalar(m.clearcoat_roughness),
+                sheen_color: at.color(m.sheen_color),
+                sheen_roughness: at.scalar(m.sheen_roughness),
+                transmission: at.scalar(m.transmission),
+                is_thin: m.thin,
+                anisotropy: at.scalar(m.anisotropy),
+                anisotropy_rotation: m.anisotropy_rotation,
             })
             .into(),
             Uncommon::PrincipledThin(ref p) => PrincipledThin::new(PrincipledThinInputs {

@@ -56,6 +56,7 @@ impl Check<'_> {
                 | MaterialDesc::PrincipledThin(_)
                 | MaterialDesc::Mask { .. },
             ) => true,
+            Some(MaterialDesc::MetallicRoughness(m)) => m.transmission != ScalarInput::Constant(0.0),
             Some(MaterialDesc::Principled(p)) => p.spec_trans != ScalarInput::Constant(0.0),
             Some(MaterialDesc::BumpMap { inner, .. } | MaterialDesc::NormalMap { inner, .. }) => {
                 self.transmits(*inner)
@@ -138,6 +139,7 @@ impl Check<'_> {
             }
             MaterialDesc::Principled(principled) => self.principled(principled, span),
             MaterialDesc::PrincipledThin(thin) => self.principled_thin(thin, span),
+            MaterialDesc::MetallicRoughness(m) => self.metallic_roughness(m, span),
             MaterialDesc::TwoSided { .. } => {}
             MaterialDesc::Mask { opacity, .. } => self.share(opacity, "scene::opacity", "an opacity", span),
             MaterialDesc::Blend { weight, .. } => self.share(weight, "scene::blend-weight", "a weight", span),

@@ -2,7 +2,7 @@
 
 use super::Check;
 use crate::diagnostic::{Diagnostic, Span};
-use crate::{PrincipledDesc, PrincipledThinDesc, ScalarInput};
+use crate::{MetallicRoughnessDesc, PrincipledDesc, PrincipledThinDesc, ScalarInput};
 
 impl Check<'_> {
     pub(super) fn principled(&mut self, p: &PrincipledDesc, span: &Span) {
@@ -46,6 +46,32 @@ impl Check<'_> {
         }
         self.within(&p.diff_trans, "diff_trans", 2.0, span);
         self.rates(&p.rates, span);
+    }
+
+    pub(super) fn metallic_roughness(&mut self, m: &MetallicRoughnessDesc, span: &Span) {
+        self.albedo(&m.base_color, "base_color", span);
+        self.color_input(&m.specular_color, "specular_color", span);
+        self.albedo(&m.sheen_color, "sheen_color", span);
+        let units = [
+            (&m.metallic, "metallic"),
+            (&m.roughness, "roughness"),
+            (&m.specular, "specular"),
+            (&m.clearcoat, "clearcoat"),
+            (&m.clearcoat_roughness, "clearcoat_roughness"),
+            (&m.sheen_roughness, "sheen_roughness"),
+            (&m.transmission, "transmission"),
+            (&m.anisotropy, "anisotropy"),
+        ];
+        for (input, name) in units {
+            self.within(input, name, 1.0, span);
+        }
+        if !(m.ior >= 1.0 && m.ior.is_finite()) {
+            let message = format!("an index of refraction of {} is not at least 1", m.ior);
+            self.error("scene::index", span, message);
+        }
+        if !m.anisotropy_rotation.is_finite() {
+            self.error("scene::not-finite", span, "anisotropy_rotation is not finite");
+        }
     }
 
     /// A number that models bring into [0, most].
