@@ -8,7 +8,8 @@ use rayon::prelude::*;
 use crate::bvh::{Bvh, MAX_INDEX, Met, PrimRef, Round, Tree};
 use crate::instance::PlacedGroup;
 use crate::{
-    Bounds3, Disk, GeometryError, GeometryInput, Hit, NO_INSTANCE, Ray, Shape, ShapeId, Sphere, TriangleMesh,
+    BilinearPatch, Bounds3, Cylinder, Disk, GeometryError, GeometryInput, Hit, NO_INSTANCE, Ray, Shape,
+    ShapeId, Sphere, TriangleMesh,
 };
 
 /// Shapes, groups and instances behind one bounding volume hierarchy; read-only.
@@ -22,6 +23,8 @@ pub struct Geometry {
     triangles: Vec<[u32; 3]>,
     spheres: Vec<Sphere>,
     disks: Vec<Disk>,
+    cylinders: Vec<Cylinder>,
+    patches: Vec<BilinearPatch>,
     instances: Vec<PlacedGroup>,
     others: Vec<Other>,
     pub(crate) bvh: Bvh,
@@ -35,6 +38,8 @@ enum ShapeRecord {
     Mesh(MeshRecord),
     Sphere(u32),
     Disk(u32),
+    Cylinder(u32),
+    Patch(u32),
 }
 
 /// Where a mesh is in the arrays. Its vertex indices count from `first_vertex`.
@@ -54,6 +59,8 @@ struct MeshRecord {
 enum Other {
     Sphere { shape: ShapeId, index: u32 },
     Disk { shape: ShapeId, index: u32 },
+    Cylinder { shape: ShapeId, index: u32 },
+    Patch { shape: ShapeId, index: u32 },
     Instance(u32),
 }
 
@@ -66,6 +73,10 @@ pub enum ShapeRef<'a> {
     Sphere(&'a Sphere),
     /// A disk.
     Disk(&'a Disk),
+    /// An open cylinder.
+    Cylinder(&'a Cylinder),
+    /// A bilinear patch.
+    Patch(&'a BilinearPatch),
 }
 
 impl Geometry {
@@ -88,6 +99,8 @@ impl Geometry {
             triangles: Vec::new(),
             spheres: Vec::new(),
             disks: Vec::new(),
+            cylinders: Vec::new(),
+            patches: Vec::new(),
             instances,
             others: Vec::new(),
             bvh: Bvh::new(),
@@ -109,6 +122,14 @@ impl Geometry {
             Shape::Disk(disk) => {
                 self.disks.push(*disk);
                 ShapeRecord::Disk(self.disks.len() as u32 - 1)
+            }
+            Shape::Cylinder(cylinder) => {
+                self.cylinders.push(*cylinder);
+                ShapeRecord::Cylinder(self.cylinders.len() as u32 - 1)
+            }
+            Shape::Patch(patch) => {
+                self.patches.push(*patch);
+                ShapeRecord::Patch(self.patches.len() as u32 - 1)
             }
         };
         self.shapes.push(record);
@@ -161,12 +182,12 @@ impl Geometry {
         tree
     }
 
-    /// The sphere or disk that a primitive of the tree is.
+    /// The sphere or disk that a primitive of the tree is. Packets know no others.
     fn round_of(&self, other: u32) -> Option<Round<'_>> {
         match self.others[other as usize] {
             Other::Sphere { shape, index } => Some(Round::Sphere(shape, &self.spheres[index as usize])),
             Other::Disk { shape, index } => Some(Round::Disk(shape, &self.disks[index as usize])),
-            Other::Instance(_) => None,
+            Other::Cylinder { .. } | Other::Patch { .. } | Other::Instance(_) => None,
         }
     }
 
@@ -190,6 +211,12 @@ impl Geometry {
                 ShapeRecord::Disk(index) => {
                     (self.disks[index as usize].bounds(), Other::Disk { shape, index })
                 }
+                ShapeRecord::Cylinder(index) => {
+                    (self.cylinders[index as usize].bounds(), Other::Cylinder { shape, index })
+                }
+                ShapeRecord::Patch(index) => {
+                    (self.patches[index as usize].bounds(), Other::Patch { shape, index })
+                }
             };
             prims.push(PrimRef::new(bounds, PrimRef::OTHER, self.others.len() as u32));
             self.others.push(other);
@@ -212,26 +239,24 @@ impl Geometry {
     /// Out of line, so that the walk over triangles stays small.
     #[inline(never)]
     pub(crate) fn meet_other(&self, other: u32, ray: &Ray) -> Met {
+        let hit =
+            |shape, t, at: Vec2| Hit { t, b1: at.x, b2: at.y, shape, primitive: 0, instance: NO_INSTANCE };
         match self.others[other as usize] {
             Other::Sphere { shape, index } => {
-                Met::Hit(self.spheres[index as usize].intersect(ray).map(|t| Hit {
-                    t,
-                    b1: 0.0,
-                    b2: 0.0,
-                    shape,
-                    primitive: 0,
-                    instance: NO_INSTANCE,
-                }))
+                let met = self.spheres[index as usize].intersect(ray);
+                Met::Hit(met.map(|t| hit(shape, t, Vec2::ZERO)))
             }
             Other::Disk { shape, index } => {
-                Met::Hit(self.disks[index as usize].intersect(ray).map(|(t, at)| Hit {
-                    t,
-                    b1: at.x,
-                    b2: at.y,
-                    shape,
-                    primitive: 0,
-                    instance: NO_INSTANCE,
-                }))
+                let met = self.disks[index as usize].intersect(ray);
+                Met::Hit(met.map(|(t, at)| hit(shape, t, at)))
+            }
+            Other::Cylinder { shape, index } => {
+                let met = self.cylinders[index as usize].intersect(ray);
+                Met::Hit(met.map(|t| hit(shape, t, Vec2::ZERO)))
+            }
+            Other::Patch { shape, index } => {
+                let met = self.patches[index as usize].intersect(ray);
+                Met::Hit(met.map(|(t, at)| hit(shape, t, at)))
             }
             Other::Instance(instance) => {
                 let placed = &self.instances[instance as usize];
@@ -258,14 +283,24 @@ impl Geometry {
             ShapeRecord::Mesh(_) => ShapeRef::Mesh,
             ShapeRecord::Sphere(index) => ShapeRef::Sphere(&self.spheres[index as usize]),
             ShapeRecord::Disk(index) => ShapeRef::Disk(&self.disks[index as usize]),
+            ShapeRecord::Cylinder(index) => ShapeRef::Cylinder(&self.cylinders[index as usize]),
+            ShapeRecord::Patch(index) => ShapeRef::Patch(&self.patches[index as usize]),
         }
     }
 
-    /// Triangles of a mesh; 1 for spheres and disks.
+    /// Triangles of a mesh; 1 for other shapes.
     pub fn primitive_count(&self, shape: ShapeId) -> u32 {
         match self.shapes[shape.0 as usize] {
             ShapeRecord::Mesh(mesh) => mesh.triangles,
-            ShapeRecord::Sphere(_) | ShapeRecord::Disk(_) => 1,
+            _ => 1,
+        }
+    }
+
+    /// Which vertices of its mesh a triangle has; `None` if `shape` is no mesh.
+    pub fn vertex_indices(&self, shape: ShapeId, triangle: u32) -> Option<[u32; 3]> {
+        match &self.shapes[shape.0 as usize] {
+            ShapeRecord::Mesh(mesh) => Some(self.triangles[(mesh.first_triangle + triangle) as usize]),
+            _ => None,
         }
     }
 
@@ -315,6 +350,8 @@ impl Geometry {
             + size_of_val(&self.triangles[..])
             + size_of_val(&self.spheres[..])
             + size_of_val(&self.disks[..])
+            + size_of_val(&self.cylinders[..])
+            + size_of_val(&self.patches[..])
             + size_of_val(&self.instances[..])
             + size_of_val(&self.others[..])
             + self.bvh.memory_bytes()

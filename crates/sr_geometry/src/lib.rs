@@ -1,6 +1,6 @@
 //! Shapes and the rays that meet them.
 //!
-//! In: [`GeometryInput`], borrowed triangle meshes, spheres and disks in world space and in groups that
+//! In: [`GeometryInput`], borrowed triangle meshes, spheres, disks, cylinders and bilinear patches in world space and in groups that
 //! [`Instance`]s place. Out: [`Geometry`], flat arrays behind one 8-wide bounding volume hierarchy, which answers
 //! [`Geometry::intersect`] (closest [`Hit`]), [`Geometry::occluded`] (any hit) and [`Geometry::surface`]
 //! (position with its error bound, normals, texture coordinates), for one ray or for a batch of [`Rays`]. No material
@@ -18,10 +18,12 @@
 mod batch;
 mod bounds;
 mod bvh;
+mod cylinder;
 mod disk;
 mod geometry;
 mod instance;
 mod offset;
+mod patch;
 mod ray;
 mod shape;
 mod sphere;
@@ -29,7 +31,9 @@ mod surface;
 
 pub use batch::{BATCH, Hits, Rays, Surfaces, Vec2s, Vec3s};
 pub use bounds::Bounds3;
+pub use cylinder::Cylinder;
 pub use geometry::{Geometry, ShapeRef};
+pub use patch::BilinearPatch;
 pub use ray::{Hit, NO_INSTANCE, Ray, ShapeId};
 pub use shape::{Disk, GeometryError, GeometryInput, Instance, MeshError, Shape, Sphere, TriangleMesh};
 pub use surface::{Surface, Tangents};

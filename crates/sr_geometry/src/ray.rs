@@ -39,13 +39,13 @@ impl Ray {
 pub struct Hit {
     /// Ray parameter, in units of the direction's length.
     pub t: f32,
-    /// Triangles: barycentric coordinate of vertex 1. Disks: coordinate along `u_axis`. Spheres: 0.
+    /// Triangles: barycentric coordinate of vertex 1. Disks: coordinate along `u_axis`. Patches: u. Others: 0.
     pub b1: f32,
-    /// Triangles: barycentric coordinate of vertex 2. Disks: coordinate along `v_axis`. Spheres: 0.
+    /// Triangles: barycentric coordinate of vertex 2. Disks: coordinate along `v_axis`. Patches: v. Others: 0.
     pub b2: f32,
     /// The shape that was hit.
     pub shape: ShapeId,
-    /// The triangle within its mesh; 0 for spheres and disks.
+    /// The triangle within its mesh; 0 for other shapes.
     pub primitive: u32,
     /// The instance through which it was hit, or [`NO_INSTANCE`].
     pub instance: u32,

@@ -2,7 +2,7 @@
 
 use glam::{Affine3A, Mat3, Vec2, Vec3};
 
-use crate::Bounds3;
+use crate::{BilinearPatch, Bounds3, Cylinder};
 
 /// A triangle mesh, borrowed. Per-vertex slices are empty or as long as `positions`.
 #[derive(Clone, Copy, Debug, Default)]
@@ -53,6 +53,10 @@ pub enum Shape<'a> {
     Sphere(Sphere),
     /// A disk.
     Disk(Disk),
+    /// An open cylinder.
+    Cylinder(Cylinder),
+    /// A bilinear patch.
+    Patch(BilinearPatch),
 }
 
 /// A placement of a group.
@@ -109,6 +113,28 @@ pub enum GeometryError {
         u_axis: Vec3,
         /// Its second half-axis.
         v_axis: Vec3,
+    },
+    /// A cylinder without a positive radius and length, or not finite.
+    #[error(
+        "shape {shape}: a cylinder of radius {radius} and length {length}; expected positive and finite numbers"
+    )]
+    Cylinder {
+        /// Which, as [`crate::ShapeId`] counts.
+        shape: u32,
+        /// Its radius.
+        radius: f32,
+        /// Its length.
+        length: f32,
+    },
+    /// A bilinear patch without area, or not finite.
+    #[error(
+        "shape {shape}: a bilinear patch between {corners:?}; expected finite points that are not on a line"
+    )]
+    Patch {
+        /// Which, as [`crate::ShapeId`] counts.
+        shape: u32,
+        /// Its corners.
+        corners: [Vec3; 4],
     },
     /// An instance of a group that is not there.
     #[error("instance {instance} places group {group}, but there are only {groups}")]
@@ -188,6 +214,18 @@ impl Shape<'_> {
                 let finite = d.center.is_finite() && u.is_finite() && v.is_finite();
                 let ok = finite && u > 0.0 && v > 0.0 && d.u_axis.dot(d.v_axis).abs() <= 1e-3 * u * v;
                 ok.then_some(()).ok_or(GeometryError::Disk { shape, u_axis: d.u_axis, v_axis: d.v_axis })
+            }
+            Shape::Cylinder(c) => {
+                let (radius, length) = (c.radius, c.length);
+                let finite = c.base.is_finite() && c.frame.is_finite() && (radius + length).is_finite();
+                let ok = finite && radius > 0.0 && length > 0.0;
+                ok.then_some(()).ok_or(GeometryError::Cylinder { shape, radius, length })
+            }
+            Shape::Patch(p) => {
+                let [p00, p10, p01, p11] = p.corners.map(|p| p.as_dvec3());
+                let area = (p11 - p00).cross(p01 - p10).length() + (p10 - p00).cross(p01 - p00).length();
+                let ok = p.corners.iter().all(|p| p.is_finite()) && area > 0.0;
+                ok.then_some(()).ok_or(GeometryError::Patch { shape, corners: p.corners })
             }
         }
     }

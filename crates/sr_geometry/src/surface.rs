@@ -136,6 +136,11 @@ impl Geometry {
                 sphere.located(ray.at(hit.t))
             }
             ShapeRef::Disk(disk) => disk.located(Vec2::new(hit.b1, hit.b2)),
+            ShapeRef::Cylinder(cylinder) => {
+                let ray = instance.map_or(*ray, |instance| instance.ray_in_group(ray));
+                cylinder.located(ray.at(hit.t))
+            }
+            ShapeRef::Patch(patch) => patch.located(Vec2::new(hit.b1, hit.b2)),
         };
         instance.map_or(located, |instance| instance.located_in_world(&located)).surface()
     }
@@ -215,6 +220,10 @@ impl Geometry {
                 sphere.tangents(instance.map_or(surface.p, |instance| instance.point_in_group(surface.p)))
             }
             ShapeRef::Disk(disk) => disk.tangents(Vec2::new(hit.b1, hit.b2)),
+            ShapeRef::Cylinder(cylinder) => {
+                cylinder.tangents(instance.map_or(surface.p, |instance| instance.point_in_group(surface.p)))
+            }
+            ShapeRef::Patch(patch) => patch.tangents(Vec2::new(hit.b1, hit.b2)),
         };
         instance.map_or(local, |instance| instance.tangents_in_world(&local))
     }

@@ -61,7 +61,7 @@ fn rays_meet_the_same_in_batches() {
             let fits = match geometry.shape_of(hit.shape) {
                 ShapeRef::Mesh => hit.b1 >= 0.0 && hit.b2 >= 0.0 && hit.b1 + hit.b2 <= 1.0,
                 ShapeRef::Disk(_) => hit.b1.hypot(hit.b2) <= 1.0,
-                ShapeRef::Sphere(_) => hit.b1 == 0.0 && hit.b2 == 0.0,
+                _ => hit.b1 == 0.0 && hit.b2 == 0.0,
             };
             assert!(fits, "{hit:?}");
             if !same(&hit, &single, ray) {

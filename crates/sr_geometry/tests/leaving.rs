@@ -3,9 +3,10 @@
 mod common;
 
 use common::{OwnedMesh, Random, closed_box, meet_both};
-use glam::{Affine3A, Quat, Vec3};
+use glam::{Affine3A, Mat3, Quat, Vec3};
 use sr_geometry::{
-    Disk, Geometry, GeometryInput, Hit, Instance, NO_INSTANCE, Ray, Shape, ShapeId, Sphere, Surface,
+    BilinearPatch, Cylinder, Disk, Geometry, GeometryInput, Hit, Instance, NO_INSTANCE, Ray, Shape, ShapeId,
+    Sphere, Surface,
 };
 
 /// Is `surface` so near an edge of the triangle that rounding may have put it outside a neighbouring side?
@@ -161,7 +162,7 @@ fn spheres_from_inside_and_outside() {
     for i in 0..100 {
         let radius = 10f32.powi(i % 9 - 4);
         let center = radius * 10f32.powi(i % 4 - 1) * random.cube();
-        let sphere = Sphere { center, radius, frame: glam::Mat3::IDENTITY, flip_normals: i % 2 == 0 };
+        let sphere = Sphere { center, radius, frame: Mat3::IDENTITY, flip_normals: i % 2 == 0 };
         let geometry =
             Geometry::build(GeometryInput { shapes: vec![Shape::Sphere(sphere)], ..Default::default() })
                 .unwrap();
@@ -235,4 +236,68 @@ fn a_ray_to_a_point_stops_before_it_but_sees_what_hides_it() {
         assert!(!geometry.occluded(&high.spawn_ray_to(middle.p)));
         assert!(geometry.occluded(&low.spawn_ray_to(high.p)));
     }
+}
+
+#[test]
+fn cylinders() {
+    let mut random = Random(26);
+    for i in 0..100 {
+        let radius = 10f32.powi(i % 9 - 4);
+        let base = radius * 10f32.powi(i % 4 - 1) * random.cube();
+        let frame = Mat3::from_quat(Quat::from_axis_angle(random.direction(), random.unit()));
+        let length = radius * 10f32.powi(i % 3 - 1);
+        let cylinder = Cylinder { base, frame, radius, length, flip_normals: i % 2 == 0 };
+        let geometry =
+            Geometry::build(GeometryInput { shapes: vec![Shape::Cylinder(cylinder)], ..Default::default() })
+                .unwrap();
+        for _ in 0..300 {
+            let on_axis = base + random.unit() * length * frame.z_axis;
+            let ray = Ray::new(on_axis, frame * random.direction().with_z(0.0));
+            let hit = geometry.intersect(&ray).expect("a ray from the axis hits");
+            let surface = geometry.surface(&ray, &hit);
+            let out = surface.p - on_axis;
+            assert!((out.length() / radius - 1.0).abs() < 1e-3, "{}", out.length() / radius);
+            // outside of a convex shape there is nothing to hit
+            let direction = random.direction();
+            let away = if direction.dot(out) > 0.0 { direction } else { -direction };
+            let leaving = surface.spawn_ray(away);
+            assert_eq!(meet_both(&geometry, &leaving), [(None, false); 2], "radius {radius}, {leaving:?}");
+        }
+    }
+}
+
+#[test]
+fn bilinear_patches() {
+    let mut random = Random(27);
+    let mut hits = 0;
+    for i in 0..200 {
+        let size = 10f32.powi(i % 9 - 4);
+        let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)]
+            .map(|(x, y)| size * (Vec3::new(x, y, 0.0) + 0.3 * random.cube()));
+        let patch = BilinearPatch { corners, flip_normals: i % 2 == 0 };
+        let geometry =
+            Geometry::build(GeometryInput { shapes: vec![Shape::Patch(patch)], ..Default::default() })
+                .unwrap();
+        for _ in 0..100 {
+            let (u, v) = (random.unit(), random.unit());
+            let target = corners[0].lerp(corners[1], u).lerp(corners[2].lerp(corners[3], u), v);
+            let origin = target + size * 3.0 * random.direction();
+            let ray = Ray::new(origin, target - origin);
+            for (hit, occluded) in meet_both(&geometry, &ray) {
+                assert!(occluded, "{ray:?}");
+                let surface = geometry.surface(&ray, &hit.expect("aimed at the patch"));
+                hits += 1;
+                // on the ray, and leaving along the normal meets nothing close by
+                let off = (surface.p - origin).reject_from(target - origin).length();
+                assert!(off < 1e-5 * size, "{off}, size {size}");
+                for side in [surface.ng, -surface.ng] {
+                    let leaving = surface.spawn_ray(side);
+                    if let Some(again) = geometry.intersect(&leaving) {
+                        assert!(again.t > 1e-3 * size, "{} of {size}", again.t);
+                    }
+                }
+            }
+        }
+    }
+    assert_eq!(hits, 40_000);
 }

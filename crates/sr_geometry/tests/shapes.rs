@@ -7,7 +7,8 @@ use std::f32::consts::{FRAC_1_SQRT_2, TAU};
 use common::{OwnedMesh, Random, soup};
 use glam::{Affine3A, Mat3, Quat, Vec2, Vec3};
 use sr_geometry::{
-    Disk, Geometry, GeometryInput, Instance, NO_INSTANCE, Ray, Shape, ShapeId, ShapeRef, Sphere, TriangleMesh,
+    BilinearPatch, Cylinder, Disk, Geometry, GeometryInput, Instance, NO_INSTANCE, Ray, Shape, ShapeId,
+    ShapeRef, Sphere, TriangleMesh,
 };
 
 fn build(shapes: Vec<Shape<'_>>) -> Geometry {
@@ -211,4 +212,90 @@ fn any_number_of_threads_gives_the_same_hits() {
         assert_eq!(hit, five.intersect(&ray));
     }
     assert!(hits > 10_000);
+}
+
+/// Mitsuba 3.9.1 gives these figures for the same rays (`ray_intersect` in `scalar_rgb`).
+#[test]
+fn a_cylinder_is_mitsuba_s() {
+    let upright =
+        Cylinder { base: Vec3::ZERO, frame: Mat3::IDENTITY, radius: 1.0, length: 1.0, flip_normals: false };
+    let mirrored = Cylinder { frame: Mat3::from_diagonal(Vec3::new(-1.0, 1.0, 1.0)), ..upright };
+    let scaled = Cylinder { radius: 2.0, length: 3.0, ..upright };
+    let inwards = Cylinder { flip_normals: true, ..upright };
+    let (x, y) = (0.953_939, 0.3);
+    let outside = Ray::new(Vec3::new(3.0, 0.3, 0.25), Vec3::NEG_X);
+    let inside = Ray::new(Vec3::new(0.0, 0.3, 0.25), Vec3::NEG_X);
+    for (cylinder, ray, t, n, uv, dpdu) in [
+        (upright, outside, 2.046_060_6, (x, y), (0.048_493_3, 0.25), (-1.884_96, 5.993_78)),
+        (mirrored, outside, 2.046_060_6, (x, y), (0.451_507, 0.25), (1.884_96, -5.993_78)),
+        (inwards, outside, 2.046_060_6, (-x, -y), (0.048_493_3, 0.25), (-1.884_96, 5.993_78)),
+        (scaled, outside, 1.022_627_6, (0.988_686, 0.15), (0.023_963_7, 0.083_333_3), (-1.884_96, 12.424_2)),
+        (upright, inside, 0.953_939_3, (-x, y), (0.451_507, 0.25), (-1.884_96, -5.993_78)),
+    ] {
+        let geometry = build(vec![Shape::Cylinder(cylinder)]);
+        let hit = geometry.intersect(&ray).unwrap();
+        let surface = geometry.surface(&ray, &hit);
+        let tangents = geometry.tangents(&surface, &hit);
+        assert!((hit.t - t).abs() < 1e-5, "{}", hit.t);
+        assert!((surface.ng - Vec3::new(n.0, n.1, 0.0)).length() < 1e-5, "{}", surface.ng);
+        assert!((surface.uv - Vec2::new(uv.0, uv.1)).length() < 1e-5, "{}", surface.uv);
+        assert_eq!(surface.uv, geometry.uv(&ray, &hit));
+        assert!((tangents.dpdu - Vec3::new(dpdu.0, dpdu.1, 0.0)).length() < 1e-4, "{}", tangents.dpdu);
+        assert_eq!(tangents.dpdv, cylinder.length * Vec3::Z);
+        assert!(geometry.bounds().min.cmple(surface.p).all() && geometry.bounds().max.cmpge(surface.p).all());
+    }
+    // open at its ends, and nowhere else
+    let geometry = build(vec![Shape::Cylinder(upright)]);
+    assert_eq!(geometry.intersect(&Ray::new(Vec3::new(0.2, 0.3, -5.0), Vec3::Z)), None);
+    assert_eq!(geometry.intersect(&Ray::new(Vec3::new(-3.0, 0.3, 1.01), Vec3::X)), None);
+    let slanted = Ray::new(Vec3::new(-1.5, 0.0, 1.25), Vec3::new(1.0, 0.0, -0.5));
+    let hit = geometry.intersect(&slanted).unwrap();
+    assert!((slanted.at(hit.t) - Vec3::new(-1.0, 0.0, 1.0)).length() < 1e-6);
+}
+
+#[test]
+fn a_flat_patch_is_a_rectangle() {
+    let corners = [(0.0, 0.0), (2.0, 0.0), (0.0, 1.0), (2.0, 1.0)].map(|(x, y)| Vec3::new(x, y, 0.0));
+    let geometry = build(vec![Shape::Patch(BilinearPatch { corners, flip_normals: false })]);
+    let ray = Ray::new(Vec3::new(0.5, 0.75, 3.0), Vec3::NEG_Z);
+    let hit = geometry.intersect(&ray).unwrap();
+    let surface = geometry.surface(&ray, &hit);
+    assert_eq!((hit.t, surface.uv, surface.ng), (3.0, Vec2::new(0.25, 0.75), Vec3::Z));
+    assert_eq!(geometry.intersect(&Ray::new(Vec3::new(2.1, 0.5, 3.0), Vec3::NEG_Z)), None);
+}
+
+/// A hyperbolic paraboloid z = x y, cut into patches: rays from above hit it once, where it is.
+#[test]
+fn patches_that_share_edges_have_no_gaps() {
+    let mut random = Random(45);
+    let n = 7;
+    let at = |i: usize, j: usize| {
+        let (x, y) = (0.3 * i as f32 - 1.0, 0.3 * j as f32 - 1.0);
+        Vec3::new(x, y, x * y)
+    };
+    let patches: Vec<_> = (0..n * n)
+        .map(|k| {
+            let (i, j) = (k % n, k / n);
+            let corners = [at(i, j), at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)];
+            Shape::Patch(BilinearPatch { corners, flip_normals: false })
+        })
+        .collect();
+    let geometry = build(patches);
+    for step in 0..40_000 {
+        // every other ray through an edge
+        let mut x = -0.99 + 2.07 * random.unit();
+        if step % 2 == 0 {
+            x = at(1 + random.below(n - 1), 0).x;
+        }
+        let y = -0.99 + 2.07 * random.unit();
+        let target = Vec3::new(x, y, x * y);
+        let ray = Ray::new(target + Vec3::new(0.02, 0.01, 3.0), Vec3::new(-0.02, -0.01, -3.0));
+        let hit = geometry.intersect(&ray).unwrap_or_else(|| panic!("a gap at {target}"));
+        let surface = geometry.surface(&ray, &hit);
+        assert!((surface.p - target).length() < 2e-6, "{} is not {target}", surface.p);
+        let normal = Vec3::new(-y, -x, 1.0).normalize();
+        assert!((surface.ng - normal).length() < 1e-5, "{} is not {normal}", surface.ng);
+        let tangents = geometry.tangents(&surface, &hit);
+        assert!(tangents.dpdu.normalize().dot(surface.ng).abs() < 1e-5);
+    }
 }

@@ -8,6 +8,7 @@ use sr_scene::{Image, Pixels};
 
 use crate::files;
 use crate::jpeg;
+use crate::pfm;
 use crate::values::srgb_to_linear;
 
 /// Images of more texels are refused before anything is allocated.
@@ -32,6 +33,9 @@ pub fn load(path: &Path, decode: Decode) -> Result<Image, String> {
     let bytes = files::read(path, files::MAX_FILE_BYTES)?;
     let (width, height, pixels) = if bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
         open_exr(&bytes)?
+    } else if pfm::is_pfm(&bytes) {
+        let (width, height, pixels) = pfm::decode(&bytes, MAX_TEXELS)?;
+        (width, height, all_finite(pixels))
     } else {
         let image =
             if jpeg::is_jpeg(&bytes) { jpeg::decode(&bytes, MAX_TEXELS)? } else { open_other(path, &bytes)? };
@@ -69,7 +73,7 @@ fn no_image(extension: &str, bytes: &[u8]) -> String {
     let named = if known { format!("it is named .{extension} but is none: ") } else { String::new() };
     let start: String = String::from_utf8_lossy(&bytes[..bytes.len().min(24)]).escape_debug().collect();
     format!(
-        "{named}its format is not known (PNG, JPEG, BMP, TGA, HDR, PNM, WebP, TIFF and OpenEXR are); \
+        "{named}its format is not known (PNG, JPEG, BMP, TGA, HDR, PFM, PNM, WebP, TIFF and OpenEXR are); \
          it begins with \"{start}\""
     )
 }
@@ -144,6 +148,13 @@ fn linear_bytes(data: &[u8], channels: u8) -> Vec<f32> {
 /// Pixels that are not numbers are black; infinite ones are the largest number of half precision.
 fn finite(value: f32) -> f32 {
     if value.is_nan() { 0.0 } else { value.clamp(-65504.0, f32::MAX) }
+}
+
+fn all_finite(mut pixels: Pixels) -> Pixels {
+    if let Pixels::F32 { data, .. } = &mut pixels {
+        data.iter_mut().for_each(|v| *v = finite(*v));
+    }
+    pixels
 }
 
 fn exr_not_decoded(error: exr::error::Error) -> String {

@@ -17,6 +17,7 @@ mod jpeg;
 mod lower;
 mod mesh;
 mod node;
+mod pfm;
 mod props;
 mod spectrum;
 mod tables;

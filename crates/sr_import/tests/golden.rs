@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use sr_import::{LoadOptions, load, load_str};
 use sr_scene::{
     ColorInput, Diagnostics, FilterDesc, FovAxis, Geometry, LightDesc, MaterialDesc, MaterialId,
-    MicrofacetKind, Rgb, ScalarInput, SceneDesc, TextureDesc,
+    MicrofacetKind, Projection, Rgb, ScalarInput, SceneDesc, TextureDesc,
 };
 
 fn data(name: &str) -> PathBuf {
@@ -32,8 +32,10 @@ fn every_kind_of_thing_arrives() {
 
     let camera = &scene.camera;
     assert_eq!((camera.film.width, camera.film.height, scene.settings.spp), (64, 16, 8));
-    assert_eq!((camera.fov_axis, camera.fov), (FovAxis::Smaller, 40f32.to_radians()));
-    assert_eq!((camera.aperture_radius, camera.focus_distance, camera.near_clip), (0.1, 3.0, 0.01));
+    let Projection::Perspective { fov_axis, fov, lens: Some(lens), .. } = camera.projection else { panic!() };
+    assert_eq!((fov_axis, fov), (FovAxis::Smaller, 40f32.to_radians()));
+    assert_eq!((lens.aperture_radius, lens.focus_distance, camera.near_clip), (0.1, 3.0, 0.01));
+    assert_eq!((lens.blades, lens.blade_rotation), (0, 0.0));
     assert_eq!(camera.film.filter, FilterDesc::Gaussian { stddev: 0.5, radius: 2.0 });
     assert_eq!(camera.world_from_camera.transform_vector3(glam::Vec3::Z), glam::Vec3::NEG_Z);
     assert_eq!(scene.settings.max_depth, Some(2));
@@ -43,7 +45,8 @@ fn every_kind_of_thing_arrives() {
     assert_eq!(front, back);
     assert!(matches!(material(*front), MaterialDesc::Diffuse { reflectance: ColorInput::Texture(_) }));
     let TextureDesc::Checkerboard { color0, color1, to_uv, .. } = &scene.textures[0] else { panic!() };
-    assert_eq!((*color0, *color1), (Rgb::splat(0.4), Rgb::splat(0.2)));
+    let grey = |v: f32| ColorInput::Constant(Rgb::splat(v));
+    assert_eq!((*color0, *color1), (grey(0.4), grey(0.2)));
     assert_eq!(to_uv.transform_point2(glam::Vec2::ONE), glam::Vec2::new(4.0, 2.0));
     let MaterialDesc::RoughConductor { kind, alpha, eta_k: Some((eta, _)), .. } =
         material(scene.shapes[1].material)

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use sr_scene::{FilterDesc, Geometry, SceneDesc};
+use sr_scene::{Geometry, Projection, SceneDesc};
 
 use crate::names::value_error;
 
@@ -28,7 +28,7 @@ impl Counts {
         let in_groups = desc.groups.iter().flat_map(|group| &group.shapes);
         let triangles = desc.shapes.iter().chain(in_groups.clone()).map(|shape| match &shape.geometry {
             Geometry::Mesh(mesh) => mesh.triangles.len(),
-            Geometry::Sphere { .. } | Geometry::Disk { .. } => 0,
+            _ => 0,
         });
         Self {
             shapes: desc.shapes.len() + in_groups.count(),
@@ -65,8 +65,9 @@ impl Scene {
     fn settings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let (settings, film) = (self.scene.settings(), &self.scene.camera().film);
         let dict = PyDict::new(py);
-        dict.set_item("width", film.width)?;
-        dict.set_item("height", film.height)?;
+        let (width, height) = film.image_size();
+        dict.set_item("width", width)?;
+        dict.set_item("height", height)?;
         dict.set_item("spp", settings.spp)?;
         dict.set_item("max_depth", edges_to_python(settings.max_depth))?;
         dict.set_item("roulette_depth", edges_to_python(settings.roulette_depth))?;
@@ -102,24 +103,32 @@ impl Scene {
         dict.set_item("position", placement.w_axis.truncate().to_array())?;
         dict.set_item("direction", placement.z_axis.truncate().normalize_or_zero().to_array())?;
         dict.set_item("up", placement.y_axis.truncate().normalize_or_zero().to_array())?;
-        dict.set_item("fov_x_deg", camera.fov_axis.horizontal(camera.fov, aspect).to_degrees())?;
-        dict.set_item("aperture_radius", camera.aperture_radius)?;
-        dict.set_item("focus_distance", camera.focus_distance)?;
+        match &camera.projection {
+            Projection::Perspective { fov_axis, fov, lens, .. } => {
+                dict.set_item("projection", "perspective")?;
+                dict.set_item("fov_x_deg", fov_axis.horizontal(*fov, aspect).to_degrees())?;
+                dict.set_item("aperture_radius", lens.map_or(0.0, |lens| lens.aperture_radius))?;
+                dict.set_item("focus_distance", lens.map(|lens| lens.focus_distance))?;
+                dict.set_item("blades", lens.map_or(0, |lens| lens.blades))?;
+            }
+            Projection::Orthographic => {
+                dict.set_item("projection", "orthographic")?;
+                dict.set_item("width", 2.0 * placement.x_axis.truncate().length())?;
+            }
+            Projection::Spherical => dict.set_item("projection", "spherical")?,
+        }
         Ok(dict)
     }
 
     fn film<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let film = &self.scene.camera().film;
-        let (filter, radius) = match film.filter {
-            FilterDesc::Box { radius } => ("box", radius),
-            FilterDesc::Tent { radius } => ("tent", radius),
-            FilterDesc::Gaussian { radius, .. } => ("gaussian", radius),
-        };
+        let (width, height) = film.image_size();
         let dict = PyDict::new(py);
-        dict.set_item("width", film.width)?;
-        dict.set_item("height", film.height)?;
-        dict.set_item("filter", filter)?;
-        dict.set_item("filter_radius", radius)?;
+        dict.set_item("width", width)?;
+        dict.set_item("height", height)?;
+        dict.set_item("crop_of", film.crop.map(|crop| [film.width, film.height, crop.x, crop.y]))?;
+        dict.set_item("filter", film.filter.name())?;
+        dict.set_item("filter_radius", film.filter.radius())?;
         Ok(dict)
     }
 }

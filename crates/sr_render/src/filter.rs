@@ -2,11 +2,15 @@
 //!
 //! With the offset's density proportional to the filter, f / p is constant and every sample belongs to
 //! exactly one pixel (Ernst, Stamminger & Greiner 2006). Filters are separable; one axis at a time.
+//!
+//! A filter with lobes below zero is sampled by its absolute value. A sample then weighs f / p = ± ∫|f| / ∫f: every
+//! sample the same but for the sign, and the mean is not biased.
 
 use sr_scene::FilterDesc;
 
-/// Cells of the tabulated inverse CDF of a filter without a closed one.
+/// Cells of the tabulated inverse CDF of a filter without a closed one, at least; and per pixel of its radius.
 const CELLS: usize = 256;
+const CELLS_PER_PIXEL: f32 = 128.0;
 
 /// One axis of a pixel filter, as a density over offsets from the pixel's centre, in pixels.
 #[derive(Clone, Debug)]
@@ -19,33 +23,47 @@ pub struct PixelFilter {
 enum Shape {
     Box,
     Tent,
-    /// The CDF at the borders of equal cells over [−radius, radius].
-    Table(Vec<f32>),
+    Table(Table),
+}
+
+/// A filter over [−radius, radius], constant in each of equal cells.
+#[derive(Clone, Debug)]
+struct Table {
+    /// ∫|f| up to the borders of the cells, over the whole of it.
+    cdf: Vec<f32>,
+    /// ∫f up to the borders of the cells, in the same unit; `None` if it is the same.
+    signed: Option<Vec<f32>>,
 }
 
 impl PixelFilter {
     /// Prepares a filter for sampling.
     pub fn new(desc: FilterDesc) -> Self {
-        match desc {
-            FilterDesc::Box { radius } => Self { shape: Shape::Box, radius },
-            FilterDesc::Tent { radius } => Self { shape: Shape::Tent, radius },
-            FilterDesc::Gaussian { stddev, radius } => {
+        let radius = desc.radius();
+        let shape = match desc {
+            FilterDesc::Box { .. } => Shape::Box,
+            FilterDesc::Tent { .. } => Shape::Tent,
+            FilterDesc::Gaussian { stddev, .. } => {
                 let gauss = |x: f32| (-0.5 * (x / stddev) * (x / stddev)).exp();
-                let lowered = |x: f32| f64::from((gauss(x) - gauss(radius)).max(0.0));
-                let mut cdf = vec![0.0_f64];
-                for i in 0..CELLS {
-                    let middle = (2.0 * (i as f32 + 0.5) / CELLS as f32 - 1.0) * radius;
-                    cdf.push(cdf[i] + lowered(middle));
-                }
-                let total = cdf[CELLS];
-                Self { shape: Shape::Table(cdf.iter().map(|c| (c / total) as f32).collect()), radius }
+                Shape::Table(Table::new(radius, |x| (gauss(x) - gauss(radius)).max(0.0)))
             }
-        }
+            FilterDesc::Mitchell { b, c } => Shape::Table(Table::new(radius, |x| cubic(x, b, c))),
+            FilterDesc::CatmullRom => Shape::Table(Table::new(radius, |x| cubic(x, 0.0, 0.5))),
+            FilterDesc::Lanczos { .. } => Shape::Table(Table::new(radius, |x| sinc(x) * sinc(x / radius))),
+            FilterDesc::BlackmanHarris { .. } => {
+                Shape::Table(Table::new(radius, |x| blackman_harris(x / radius)))
+            }
+        };
+        Self { shape, radius }
     }
 
     /// Half the filter's width, in pixels.
     pub fn radius(&self) -> f32 {
         self.radius
+    }
+
+    /// Is it negative somewhere? Then samples have weights.
+    pub fn is_signed(&self) -> bool {
+        matches!(&self.shape, Shape::Table(Table { signed: Some(_), .. }))
     }
 
     /// The probability that an offset is below `x`.
@@ -55,9 +73,10 @@ impl PixelFilter {
             Shape::Box => 0.5 + 0.5 * t,
             Shape::Tent if t < 0.0 => 0.5 * (1.0 + t) * (1.0 + t),
             Shape::Tent => 1.0 - 0.5 * (1.0 - t) * (1.0 - t),
-            Shape::Table(cdf) => {
-                let cell = (0.5 + 0.5 * t) * CELLS as f32;
-                let i = (cell as usize).min(CELLS - 1);
+            Shape::Table(Table { cdf, .. }) => {
+                let cells = cdf.len() - 1;
+                let cell = (0.5 + 0.5 * t) * cells as f32;
+                let i = (cell as usize).min(cells - 1);
                 cdf[i] + (cell - i as f32) * (cdf[i + 1] - cdf[i])
             }
         }
@@ -84,7 +103,7 @@ impl PixelFilter {
                     *u = tent_icdf(*u) * self.radius;
                 }
             }
-            Shape::Table(cdf) => {
+            Shape::Table(Table { cdf, .. }) => {
                 for u in u {
                     *u = table_icdf(cdf, *u) * self.radius;
                 }
@@ -99,6 +118,78 @@ impl PixelFilter {
         let is_amid = below >= self.radius && above >= self.radius;
         if is_amid { (0.0, 1.0) } else { (self.cdf(-below), self.cdf(above)) }
     }
+
+    /// ∫|f| / ∫f over the offsets of a part of [0, 1): how much a sample of it weighs, but for its sign.
+    pub fn gain(&self, (low, high): (f32, f32)) -> f32 {
+        match &self.shape {
+            Shape::Table(table) => (high - low) / (table.signed_at(high) - table.signed_at(low)),
+            Shape::Box | Shape::Tent => 1.0,
+        }
+    }
+
+    /// The sign of the filter at the offset of probability `u`.
+    pub fn sign(&self, u: f32) -> f32 {
+        match &self.shape {
+            Shape::Table(Table { cdf, signed: Some(signed) }) => {
+                let i = cell_of(cdf, u);
+                (signed[i + 1] - signed[i]).signum()
+            }
+            _ => 1.0,
+        }
+    }
+}
+
+impl Table {
+    /// Tabulates `f`, whose integral is positive.
+    fn new(radius: f32, f: impl Fn(f32) -> f32) -> Self {
+        let cells = CELLS.max((CELLS_PER_PIXEL * radius) as usize);
+        let (mut cdf, mut signed) = (vec![0.0_f64], vec![0.0_f64]);
+        for i in 0..cells {
+            let middle = (2.0 * (i as f32 + 0.5) / cells as f32 - 1.0) * radius;
+            let value = f64::from(f(middle));
+            cdf.push(cdf[i] + value.abs());
+            signed.push(signed[i] + value);
+        }
+        let total = cdf[cells];
+        let scaled = |sums: &[f64]| sums.iter().map(|sum| (sum / total) as f32).collect();
+        let is_signed = signed[cells] < total;
+        Self { cdf: scaled(&cdf), signed: is_signed.then(|| scaled(&signed)) }
+    }
+
+    /// ∫f up to the offset of probability `u`.
+    fn signed_at(&self, u: f32) -> f32 {
+        let Some(signed) = &self.signed else { return u };
+        let i = cell_of(&self.cdf, u);
+        let width = self.cdf[i + 1] - self.cdf[i];
+        let within = if width > 0.0 { ((u - self.cdf[i]) / width).clamp(0.0, 1.0) } else { 0.0 };
+        signed[i] + within * (signed[i + 1] - signed[i])
+    }
+}
+
+/// Mitchell & Netravali 1988, eq. 8.
+fn cubic(x: f32, b: f32, c: f32) -> f32 {
+    let x = x.abs();
+    let (x2, x3) = (x * x, x * x * x);
+    if x < 1.0 {
+        ((12.0 - 9.0 * b - 6.0 * c) * x3 + (-18.0 + 12.0 * b + 6.0 * c) * x2 + (6.0 - 2.0 * b)) / 6.0
+    } else if x < 2.0 {
+        let linear = -12.0 * b - 48.0 * c;
+        ((-b - 6.0 * c) * x3 + (6.0 * b + 30.0 * c) * x2 + linear * x + (8.0 * b + 24.0 * c)) / 6.0
+    } else {
+        0.0
+    }
+}
+
+/// sin(πx) / (πx).
+fn sinc(x: f32) -> f32 {
+    let a = std::f32::consts::PI * x;
+    if a.abs() < 1e-4 { 1.0 } else { a.sin() / a }
+}
+
+/// The minimum four-term window over [−1, 1] (Harris 1978, table I).
+fn blackman_harris(x: f32) -> f32 {
+    let a = std::f32::consts::PI * x;
+    0.35875 + 0.48829 * a.cos() + 0.14128 * (2.0 * a).cos() + 0.01168 * (3.0 * a).cos()
 }
 
 /// Of a tent over [−1, 1]. Does not branch.
@@ -108,13 +199,19 @@ fn tent_icdf(u: f32) -> f32 {
     if u < 0.5 { left } else { right }
 }
 
+/// The cell in which a tabulated CDF reaches `u`.
+#[inline]
+fn cell_of(cdf: &[f32], u: f32) -> usize {
+    cdf.partition_point(|&c| c <= u).clamp(1, cdf.len() - 1) - 1
+}
+
 /// Of a tabulated CDF over [−1, 1].
 #[inline]
 fn table_icdf(cdf: &[f32], u: f32) -> f32 {
-    let i = cdf.partition_point(|&c| c <= u).clamp(1, CELLS) - 1;
+    let i = cell_of(cdf, u);
     let width = cdf[i + 1] - cdf[i];
     let within = if width > 0.0 { ((u - cdf[i]) / width).clamp(0.0, 1.0) } else { 0.5 };
-    2.0 * (i as f32 + within) / CELLS as f32 - 1.0
+    2.0 * (i as f32 + within) / (cdf.len() - 1) as f32 - 1.0
 }
 
 #[cfg(test)]
@@ -126,6 +223,10 @@ mod tests {
             FilterDesc::Box { radius: 0.5 },
             FilterDesc::Tent { radius: 1.0 },
             FilterDesc::Gaussian { stddev: 0.5, radius: 2.0 },
+            FilterDesc::Mitchell { b: 1.0 / 3.0, c: 1.0 / 3.0 },
+            FilterDesc::CatmullRom,
+            FilterDesc::Lanczos { lobes: 3 },
+            FilterDesc::BlackmanHarris { radius: 1.5 },
         ]
         .map(PixelFilter::new)
         .into()
@@ -143,11 +244,39 @@ mod tests {
 
     #[test]
     fn variance_is_the_filter_s() {
-        let expected = [1.0 / 12.0, 1.0 / 6.0, 0.2486];
+        // Mitchell & Netravali's is B / 3 where B + 2 C = 1; the last one is by quadrature
+        let expected = [1.0 / 12.0, 1.0 / 6.0, 0.2486, 1.0 / 9.0, 0.0, 0.0, 0.17266];
         for (filter, expected) in all().iter().zip(expected) {
             let n = 100_000;
-            let sum: f64 = (0..n).map(|i| f64::from(filter.icdf((i as f32 + 0.5) / n as f32)).powi(2)).sum();
+            let gain = f64::from(filter.gain((0.0, 1.0)));
+            let squared = |u: f32| f64::from(filter.icdf(u)).powi(2) * f64::from(filter.sign(u)) * gain;
+            let sum: f64 = (0..n).map(|i| squared((i as f32 + 0.5) / n as f32)).sum();
             assert!((sum / f64::from(n) - expected).abs() < 1e-3, "{filter:?}: {}", sum / f64::from(n));
+        }
+    }
+
+    #[test]
+    fn weights_sum_to_one_in_every_pixel() {
+        let mut filters = all();
+        for b in -4..=4 {
+            for c in -4..=4 {
+                let (b, c) = (0.5 * b as f32, 0.5 * c as f32);
+                filters.push(PixelFilter::new(FilterDesc::Mitchell { b, c }));
+            }
+        }
+        filters.extend([1, 2, 8, 32].map(|lobes| PixelFilter::new(FilterDesc::Lanczos { lobes })));
+        for filter in filters {
+            for count in [1, 2, 3, 5, 9, 100] {
+                for index in [0, count / 3, count / 2, count - 1] {
+                    let (low, high) = filter.inside(index, count);
+                    let n = 4096;
+                    let sign = |i: u32| filter.sign(low + (high - low) * (i as f32 + 0.5) / n as f32);
+                    let mean = (0..n).map(sign).sum::<f32>() / n as f32;
+                    let gain = filter.gain((low, high));
+                    assert!(gain > 0.0 && gain < 20.0, "{gain} at {index} of {count}: {filter:?}");
+                    assert!((mean * gain - 1.0).abs() < 0.01, "{} at {index} of {count}", mean * gain);
+                }
+            }
         }
     }
 

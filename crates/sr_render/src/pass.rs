@@ -8,17 +8,19 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use glam::Vec2;
 use rayon::prelude::*;
-use sr_geometry::{BATCH, Vec2s};
+use sr_geometry::{BATCH, Rays, Vec2s};
 use sr_sampling::Sequence;
 use sr_sampling::isa::{Isa, Work};
+use sr_scene::FilmWindow;
 
-use crate::camera::Camera;
+use crate::camera::{Camera, Project};
 use crate::film::{AUX, PixelSums, REPLICATES, SUMS};
 use crate::filter::PixelFilter;
 use crate::integrator::{CameraRays, Integrator, PathSample};
 use crate::pairwise::{PairwiseSum, pairwise};
 use crate::render::RenderSettings;
 use crate::scene::Scene;
+use crate::texture::RayCone;
 
 /// Pixels that one task renders, unless they are fewer than a batch has room for.
 const PIXELS_PER_TASK: usize = 64;
@@ -28,10 +30,14 @@ pub(crate) struct Sampler<'a, I, Q> {
     scene: &'a Scene,
     integrator: &'a I,
     camera: Camera,
+    /// How wide its rays are: a pixel.
+    cone: RayCone,
     filter: PixelFilter,
     sample_border: bool,
+    /// Pixels across the image.
     width: u32,
-    height: u32,
+    /// Where the image is in the film.
+    window: FilmWindow,
     /// One independent sequence per replicate.
     sequences: [Q; REPLICATES],
     isa: Isa,
@@ -39,14 +45,18 @@ pub(crate) struct Sampler<'a, I, Q> {
 
 impl<'a, I: Integrator, Q: Sequence> Sampler<'a, I, Q> {
     pub fn new(scene: &'a Scene, settings: &RenderSettings, integrator: &'a I, sequence: &Q) -> Self {
+        let window = scene.camera.film.window(settings.width, settings.height);
+        let (film_width, film_height) = window.film;
+        let camera = Camera::new(&scene.camera, film_width, film_height);
         Self {
             scene,
             integrator,
-            camera: Camera::new(&scene.camera, settings.width, settings.height),
+            cone: camera.pixel_cone(film_height),
+            camera,
             filter: PixelFilter::new(scene.camera.film.filter),
             sample_border: scene.camera.film.sample_border,
             width: settings.width,
-            height: settings.height,
+            window,
             sequences: std::array::from_fn(|r| sequence.replicate(r as u32)),
             isa: Isa::detect(),
         }
@@ -67,65 +77,97 @@ impl<'a, I: Integrator, Q: Sequence> Sampler<'a, I, Q> {
         (!cancel.load(Ordering::Relaxed)).then(|| rejected.into_inner())
     }
 
-    /// Makes the camera rays of samples `start .. start + per_pixel` of `pixels`.
+    /// Makes the camera rays of samples `start .. start + per_pixel` of `pixels`, and the samples' weights if the
+    /// filter is negative somewhere.
     #[inline(always)]
-    fn camera_rays(&self, rays: &mut CameraRays<Q>, pixels: Range<u32>, start: u32, per_pixel: u32) {
+    fn camera_rays(
+        &self,
+        rays: &mut CameraRays<Q>,
+        weights: &mut [f32; BATCH],
+        pixels: Range<u32>,
+        start: u32,
+        per_pixel: u32,
+    ) {
         let zero = Vec2s::splat(Vec2::ZERO);
         let (mut film, mut centre, mut low, mut span) = (zero.clone(), zero.clone(), zero.clone(), zero);
         let mut i = 0;
         for pixel in pixels {
-            let window = self.window(pixel);
+            let window = self.filter_window(pixel);
             for sample in start..start + per_pixel {
-                rays.pixel[i] = pixel;
+                rays.pixel[i] = window.pixel;
                 rays.index[i] = sample / REPLICATES as u32;
                 rays.sequence[i] = self.sequences[sample as usize % REPLICATES];
                 centre.set(i, window.centre);
                 low.set(i, window.low);
                 span.set(i, window.span);
+                weights[i] = window.gain;
                 i += 1;
             }
         }
-        rays.count = i;
+        (rays.count, rays.cone) = (i, self.cone);
         let count = i.min(BATCH);
         for i in 0..count {
             film.set(i, low.get(i) + rays.cursor(i).next_2d() * span.get(i));
+        }
+        if self.filter.is_signed() {
+            for i in 0..count {
+                weights[i] *= self.filter.sign(film.x[i]) * self.filter.sign(film.y[i]);
+            }
         }
         self.filter.place(&mut film.x[..count]);
         self.filter.place(&mut film.y[..count]);
         for i in 0..count {
             film.set(i, centre.get(i) + film.get(i));
         }
-        let size = Vec2::new(self.width as f32, self.height as f32);
-        if self.camera.has_lens() {
-            for i in 0..count {
-                let u_lens = rays.cursor(i).at(2).next_2d();
-                rays.rays.set(i, &self.camera.ray(film.get(i) / size, u_lens));
+        let size = Vec2::new(self.window.film.0 as f32, self.window.film.1 as f32);
+        match &self.camera {
+            Camera::Perspective(camera) if self.camera.has_lens() => {
+                for i in 0..count {
+                    let u_lens = rays.cursor(i).at(2).next_2d();
+                    rays.rays.set(i, &camera.ray(film.get(i) / size, u_lens));
+                }
             }
-        } else {
-            for i in 0..count {
-                rays.rays.set(i, &self.camera.ray(film.get(i) / size, Vec2::ZERO));
-            }
+            Camera::Perspective(camera) => project(camera, &film, size, &mut rays.rays, count),
+            Camera::Orthographic(camera) => project(camera, &film, size, &mut rays.rays, count),
+            Camera::Spherical(camera) => project(camera, &film, size, &mut rays.rays, count),
         }
     }
 
-    fn window(&self, pixel: u32) -> FilterWindow {
-        let (x, y) = (pixel % self.width, pixel / self.width);
+    fn filter_window(&self, pixel: u32) -> FilterWindow {
+        let FilmWindow { film: (width, height), origin } = self.window;
+        let (x, y) = (origin.0 + pixel % self.width, origin.1 + pixel / self.width);
         let inside = |index, count| match self.sample_border {
             true => (0.0, 1.0),
             false => self.filter.inside(index, count),
         };
-        let ((x0, x1), (y0, y1)) = (inside(x, self.width), inside(y, self.height));
+        let (across, down) = (inside(x, width), inside(y, height));
         FilterWindow {
+            // of the film, so that a crop takes the samples of the whole
+            pixel: y.wrapping_mul(width).wrapping_add(x),
             centre: Vec2::new(x as f32 + 0.5, y as f32 + 0.5),
-            low: Vec2::new(x0, y0),
-            span: Vec2::new(x1 - x0, y1 - y0),
+            low: Vec2::new(across.0, down.0),
+            span: Vec2::new(across.1 - across.0, down.1 - down.0),
+            gain: if self.filter.is_signed() {
+                self.filter.gain(across) * self.filter.gain(down)
+            } else {
+                1.0
+            },
         }
+    }
+}
+
+/// The rays of a camera without a lens, through film positions in pixels.
+#[inline(always)]
+fn project(camera: &impl Project, film: &Vec2s, size: Vec2, rays: &mut Rays, count: usize) {
+    for i in 0..count {
+        rays.set(i, &camera.ray(film.get(i) / size, Vec2::ZERO));
     }
 }
 
 /// Memory for a batch of samples, which one task after the other uses.
 struct Desk<I: Integrator, Q: Sequence> {
     rays: Box<CameraRays<Q>>,
+    weights: Box<[f32; BATCH]>,
     workspace: I::Workspace<Q>,
     samples: Box<[PathSample; BATCH]>,
     tree: PairwiseSum,
@@ -136,6 +178,7 @@ impl<I: Integrator, Q: Sequence> Desk<I, Q> {
         let sequence = sampler.sequences[0];
         Self {
             rays: Box::new(CameraRays::none(sequence)),
+            weights: Box::new([1.0; BATCH]),
             workspace: sampler.integrator.workspace(sequence),
             samples: Box::new([PathSample::default(); BATCH]),
             tree: PairwiseSum::new(),
@@ -162,7 +205,7 @@ impl<I: Integrator, Q: Sequence> Work for Tile<'_, I, Q> {
     #[inline(always)]
     fn run(self) -> u64 {
         let Self { sampler, desk, first_pixel, first, len, sums, cancel } = self;
-        let Desk { rays, workspace, samples, tree } = desk;
+        let Desk { rays, weights, workspace, samples, tree } = desk;
         let per_pixel = len.min(BATCH as u32);
         let mut rejected = 0;
         let pixels_per_batch = BATCH / per_pixel as usize;
@@ -173,8 +216,13 @@ impl<I: Integrator, Q: Sequence> Work for Tile<'_, I, Q> {
                     // Half a sum may be left in the tree, but nothing more is added to it.
                     return rejected;
                 }
-                sampler.camera_rays(rays, at..at + sums.len() as u32, start, per_pixel);
+                sampler.camera_rays(rays, weights, at..at + sums.len() as u32, start, per_pixel);
                 sampler.integrator.trace(sampler.scene, rays, workspace, samples, cancel);
+                if sampler.filter.is_signed() {
+                    for (sample, &weight) in samples[..rays.count].iter_mut().zip(weights.iter()) {
+                        sample.li *= weight;
+                    }
+                }
                 for (samples, sums) in samples[..rays.count].chunks(per_pixel as usize).zip(&mut *sums) {
                     rejected += add_samples(samples, start, tree);
                     if start + per_pixel == first + len {
@@ -215,9 +263,13 @@ fn add_samples(samples: &[PathSample], start: u32, tree: &mut PairwiseSum) -> u6
 
 /// The part of the filter that a pixel draws its samples from.
 struct FilterWindow {
+    /// The pixel of the film.
+    pixel: u32,
     centre: Vec2,
     low: Vec2,
     span: Vec2,
+    /// What its samples weigh, but for their sign.
+    gain: f32,
 }
 
 #[cfg(test)]

@@ -19,7 +19,7 @@ use crate::strategy::Strategy;
 /// How to render.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RenderSettings {
-    /// Pixels across.
+    /// Pixels across the image: the film, or its crop.
     pub width: u32,
     /// Pixels down.
     pub height: u32,
@@ -42,10 +42,10 @@ impl RenderSettings {
     /// What the scene file asks for, with the default strategy and sampler.
     pub fn from_scene(scene: &Scene) -> Self {
         let Settings { max_depth, roulette_depth, hide_emitters, .. } = *scene.settings();
-        let film = &scene.camera().film;
+        let (width, height) = scene.camera().film.image_size();
         Self {
-            width: film.width,
-            height: film.height,
+            width,
+            height,
             max_depth,
             roulette_depth,
             hide_emitters,

@@ -5,14 +5,15 @@
 use std::sync::Arc;
 
 use sr_geometry::{
-    Disk, Geometry, GeometryError, GeometryInput, Instance, Shape, ShapeId, Sphere, TriangleMesh,
+    BilinearPatch, Cylinder, Disk, Geometry, GeometryError, GeometryInput, Hit, Instance, Ray, Shape,
+    ShapeId, Sphere, TriangleMesh,
 };
 use sr_scene::{CameraDesc, Emission, MaterialId, MeshDesc, SceneDesc, Settings, ShapeDesc};
 use thiserror::Error;
 
 use crate::light::{AreaLight, Compiled, Extended, LightId, Lights, Triangle, compile_light};
 use crate::material::{MaterialError, Materials};
-use crate::texture::Textures;
+use crate::texture::{MeshColors, RayCone, TexturePoint, Textures, footprint};
 
 /// Why a description does not compile.
 #[derive(Debug, Error)]
@@ -36,6 +37,7 @@ pub struct Scene {
     pub(crate) materials: Materials,
     material_count: usize,
     pub(crate) textures: Textures,
+    mesh_colors: MeshColors,
     texture_count: usize,
     pub(crate) lights: Lights,
 }
@@ -80,6 +82,7 @@ impl Scene {
             materials,
             material_count: desc.materials.len(),
             textures,
+            mesh_colors: MeshColors::new(desc),
             texture_count: desc.textures.len(),
             lights,
         })
@@ -122,7 +125,28 @@ impl Scene {
 
     /// Bytes of geometry and textures.
     pub fn memory_bytes(&self) -> usize {
-        self.geometry.memory_bytes() + self.textures.memory_bytes()
+        self.geometry.memory_bytes() + self.textures.memory_bytes() + self.mesh_colors.memory_bytes()
+    }
+
+    /// Where textures are looked up at a hit of a ray.
+    #[inline(always)]
+    pub(crate) fn texture_point(&self, ray: &Ray, hit: &Hit, cone: RayCone) -> TexturePoint {
+        let mut at = self.geometry.uv(ray, hit).into();
+        if self.textures.has_mipmaps() || !self.mesh_colors.is_empty() {
+            self.complete(&mut at, ray, hit, cone);
+        }
+        at
+    }
+
+    /// What few scenes' textures depend on.
+    #[inline(never)]
+    fn complete(&self, at: &mut TexturePoint, ray: &Ray, hit: &Hit, cone: RayCone) {
+        if self.textures.has_mipmaps() && cone.width >= 0.0 {
+            at.footprint = footprint(&self.geometry, ray, hit, cone.at(hit.t));
+        }
+        if !self.mesh_colors.is_empty() {
+            [at.vertex_color, at.face_color] = self.mesh_colors.at(&self.geometry, hit);
+        }
     }
 
     #[inline]
@@ -144,6 +168,12 @@ fn input_shape(shape: &ShapeDesc) -> Shape<'_> {
         }
         &sr_scene::Geometry::Disk { center, u_axis, v_axis, flip_normals } => {
             Shape::Disk(Disk { center, u_axis, v_axis, flip_normals })
+        }
+        &sr_scene::Geometry::Cylinder { base, frame, radius, length, flip_normals } => {
+            Shape::Cylinder(Cylinder { base, frame, radius, length, flip_normals })
+        }
+        &sr_scene::Geometry::Patch { corners, flip_normals } => {
+            Shape::Patch(BilinearPatch { corners, flip_normals })
         }
     }
 }
@@ -219,5 +249,11 @@ fn area_light(
             let normal = if flip_normals { -facing } else { facing };
             Some(AreaLight::disk(center, u_axis, v_axis, normal, emission.radiance, textures))
         }
+        &sr_scene::Geometry::Cylinder { base, frame, radius, length, flip_normals } => {
+            let sides = Cylinder { base, frame, radius, length, flip_normals };
+            Some(AreaLight::cylinder(sides, emission.radiance, textures))
+        }
+        // Refused when the scene was validated.
+        sr_scene::Geometry::Patch { .. } => None,
     }
 }

@@ -10,6 +10,7 @@ use sr_scene::Rgb;
 
 use crate::material::{Face, Place};
 use crate::scene::Scene;
+use crate::texture::TexturePoint;
 
 /// An orthonormal frame with `n` as its +Z; left-handed behind surfaces whose tangents matter.
 #[derive(Clone, Copy, Debug)]
@@ -55,9 +56,16 @@ pub(crate) struct Sight {
 }
 
 impl Sight {
-    /// Of a hit, seen along `ray`, and the scattering model of the side of the material that is seen.
+    /// Of a hit, seen along `ray`, and the scattering model of the side of the material that is seen;
+    /// `at` is where its textures are looked up.
     #[inline]
-    pub fn with_model<'a>(scene: &'a Scene, ray: &Ray, hit: &Hit, surface: &Surface) -> (Self, AnyBsdf<'a>) {
+    pub fn with_model<'a>(
+        scene: &'a Scene,
+        ray: &Ray,
+        hit: &Hit,
+        surface: &Surface,
+        at: TexturePoint,
+    ) -> (Self, AnyBsdf<'a>) {
         let (wo, normal) = (-ray.direction, surface.ns);
         let Face { side, turn, .. } =
             scene.materials.face(scene.material_of(hit.shape), wo.dot(normal) < 0.0);
@@ -69,7 +77,7 @@ impl Sight {
             frame = Frame { n: normal * turn, ..Frame::along(normal, world.dpdu) };
             tangents = [world.dpdu, world.dpdv].map(|w| frame.to_local(w));
         }
-        let place = Place { textures: &scene.textures, uv: surface.uv, wo: frame.to_local(wo), tangents };
+        let place = Place { textures: &scene.textures, at, wo: frame.to_local(wo), tangents };
         (Self { wo: place.wo, frame }, scene.materials.bsdf(side, &place))
     }
 

@@ -1,35 +1,62 @@
-//! Cameras, films and pixel filters.
+//! Cameras.
 
 use glam::{Mat4, Vec2};
 
+use crate::FilmDesc;
 use crate::diagnostic::Span;
 
-/// A pinhole or thin-lens camera.
+/// Where an image is taken from, and how.
 ///
 /// In camera space the view is along +Z, +Y is up and +X is to the *left* of the image
 /// (Mitsuba's convention).
 #[derive(Clone, Debug)]
 pub struct CameraDesc {
-    /// Rigid placement; a scale is removed when the scene is compiled.
+    /// Placement. A scale means something to orthographic cameras alone, and is removed for others.
     pub world_from_camera: Mat4,
-    /// The direction of the film along which `fov` is measured.
-    pub fov_axis: FovAxis,
-    /// The full angle of view along `fov_axis`, in radians.
-    pub fov: f32,
-    /// Rays start at this distance along +Z.
+    /// Which way the rays go.
+    pub projection: Projection,
+    /// Rays start at this distance: along +Z, or along the ray for [`Projection::Spherical`].
     pub near_clip: f32,
-    /// Nothing farther than this along +Z is seen.
+    /// Nothing farther than this is seen.
     pub far_clip: f32,
-    /// Offset of the principal point, in fractions of the film's width and height.
-    pub principal_point_offset: Vec2,
-    /// Radius of the lens; 0 is a pinhole.
-    pub aperture_radius: f32,
-    /// Distance along +Z that is in focus; used if `aperture_radius > 0`.
-    pub focus_distance: f32,
     /// The film.
     pub film: FilmDesc,
     /// Where the camera was described.
     pub span: Span,
+}
+
+/// Which way a camera's rays go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Projection {
+    /// Through a point, or through a thin lens.
+    Perspective {
+        /// The direction of the film along which `fov` is measured.
+        fov_axis: FovAxis,
+        /// The full angle of view along `fov_axis`, in radians.
+        fov: f32,
+        /// Offset of the principal point, in fractions of the film's width and height.
+        principal_point_offset: Vec2,
+        /// A pinhole if `None`.
+        lens: Option<Lens>,
+    },
+    /// Along +Z. The film's width shows x from 1 to −1 of camera space.
+    Orthographic,
+    /// All around, as an environment map shows it: the width is the longitude, from −Z by way of +X, the height the
+    /// angle from +Y.
+    Spherical,
+}
+
+/// A thin lens.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lens {
+    /// Radius of the aperture, or of the circle around its corners; 0 is a pinhole.
+    pub aperture_radius: f32,
+    /// Distance along +Z that is in focus.
+    pub focus_distance: f32,
+    /// Corners of the aperture; 0 is a disk.
+    pub blades: u32,
+    /// The angle of a corner from camera-space +X, in radians.
+    pub blade_rotation: f32,
 }
 
 /// The direction of the film that an angle of view is measured along.
@@ -62,40 +89,4 @@ impl FovAxis {
             FovAxis::Smaller | FovAxis::Larger => fov,
         }
     }
-}
-
-/// The grid of pixels.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FilmDesc {
-    /// Pixels across.
-    pub width: u32,
-    /// Pixels down.
-    pub height: u32,
-    /// The pixel filter.
-    pub filter: FilterDesc,
-    /// May a border pixel's filter gather light from outside the film? If not, the filter is cut at
-    /// the border and renormalised.
-    pub sample_border: bool,
-}
-
-/// A separable pixel reconstruction filter; lengths in pixels.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum FilterDesc {
-    /// Constant within `radius`.
-    Box {
-        /// Half the width.
-        radius: f32,
-    },
-    /// Falls linearly to 0 at `radius`.
-    Tent {
-        /// Half the width.
-        radius: f32,
-    },
-    /// A Gaussian, lowered to be 0 at `radius`.
-    Gaussian {
-        /// Standard deviation.
-        stddev: f32,
-        /// Where it is cut.
-        radius: f32,
-    },
 }

@@ -6,6 +6,7 @@
 pub mod camera;
 pub mod desc;
 pub mod diagnostic;
+pub mod film;
 pub mod image;
 pub mod light;
 pub mod material;
@@ -16,9 +17,10 @@ pub mod shape;
 pub mod texture;
 mod validate;
 
-pub use camera::{CameraDesc, FilmDesc, FilterDesc, FovAxis};
+pub use camera::{CameraDesc, FovAxis, Lens, Projection};
 pub use desc::{MaterialId, SceneDesc, Settings, TextureId};
 pub use diagnostic::{Diagnostic, Diagnostics, Severity, SourceId, Sources, Span};
+pub use film::{Crop, FilmDesc, FilmWindow, FilterDesc};
 pub use image::{Image, Pixels};
 pub use light::{LightDesc, MAX_PORTALS, Portal, SphereMapping};
 pub use material::{
@@ -27,7 +29,7 @@ pub use material::{
 };
 pub use profile::IntensityProfile;
 pub use shape::{Emission, Geometry, GroupDesc, InstanceDesc, MeshDesc, ShapeDesc};
-pub use texture::{Filter, TextureDesc, Wrap};
+pub use texture::{Filter, MeshColorOf, TextureDesc, Wrap};
 pub use validate::{MAX_FILM_PIXELS, validate};
 
 /// Linear RGB: radiance, reflectance or importance.

@@ -1,10 +1,10 @@
-//! Shapes: meshes, spheres and disks, what they are made of, and what they emit.
+//! Shapes: meshes, spheres, disks, cylinders and patches, what they are made of, and what they emit.
 
 use std::sync::Arc;
 
 use glam::{Affine3A, Vec2, Vec3};
 
-use crate::{ColorInput, MaterialId, diagnostic::Span};
+use crate::{ColorInput, MaterialId, Rgb, diagnostic::Span};
 
 /// A shape in the space of the list that holds it (world space for [`crate::SceneDesc::shapes`]).
 #[derive(Clone, Debug)]
@@ -49,6 +49,27 @@ pub enum Geometry {
         /// Does the normal point against `u_axis` × `v_axis`?
         flip_normals: bool,
     },
+    /// An open cylinder. Its (u, v) are (φ / 2π, z / `length`) in its own frame.
+    Cylinder {
+        /// Centre of the circle at z = 0.
+        base: Vec3,
+        /// World-space +X, +Y, +Z of the cylinder's own frame, orthonormal, +Z along the axis; a mirrored frame is
+        /// allowed and leaves the normals outward.
+        frame: glam::Mat3,
+        /// Radius, positive.
+        radius: f32,
+        /// From one end to the other, positive.
+        length: f32,
+        /// Do normals point to the axis?
+        flip_normals: bool,
+    },
+    /// The surface p(u, v) between four points that is linear in u and in v. It cannot emit.
+    Patch {
+        /// p(0, 0), p(1, 0), p(0, 1), p(1, 1).
+        corners: [Vec3; 4],
+        /// Does the normal point against ∂p/∂u × ∂p/∂v?
+        flip_normals: bool,
+    },
 }
 
 /// A triangle mesh. Per-vertex arrays are empty or as long as `positions`.
@@ -64,6 +85,10 @@ pub struct MeshDesc {
     pub uvs: Vec<Vec2>,
     /// Vertex indices, counter-clockwise seen from the front.
     pub triangles: Vec<[u32; 3]>,
+    /// Colours of the vertices, for [`crate::TextureDesc::MeshColor`]; may be empty.
+    pub vertex_colors: Vec<Rgb>,
+    /// Colours of the triangles; empty, or as long as `triangles`.
+    pub face_colors: Vec<Rgb>,
 }
 
 /// Diffuse emission from the front of a shape.

@@ -2,7 +2,7 @@
 
 use glam::Affine2;
 
-use crate::{Rgb, diagnostic::Span};
+use crate::{ColorInput, ScalarInput, diagnostic::Span};
 
 /// A function of surface coordinates.
 #[derive(Clone, Debug)]
@@ -26,14 +26,52 @@ pub enum TextureDesc {
     /// Two colours in squares: each unit square of texture space has 2 × 2 of them, `color0` at the origin.
     Checkerboard {
         /// The colour at the origin.
-        color0: Rgb,
+        color0: ColorInput,
         /// The other colour.
-        color1: Rgb,
+        color1: ColorInput,
         /// Applied to the surface's (u, v) first.
         to_uv: Affine2,
         /// Where it was described.
         span: Span,
     },
+    /// The product of two colours.
+    Scale {
+        /// One.
+        input: ColorInput,
+        /// The other.
+        factor: ColorInput,
+        /// Where it was described.
+        span: Span,
+    },
+    /// Something between two colours.
+    Mix {
+        /// What is seen where the weight is 0.
+        color0: ColorInput,
+        /// What is seen where the weight is 1.
+        color1: ColorInput,
+        /// Brought into [0, 1].
+        weight: ScalarInput,
+        /// Where it was described.
+        span: Span,
+    },
+    /// The colours of the mesh that it is on; grey (0.5) on what has none. Lights cannot have it.
+    MeshColor {
+        /// Which of them.
+        of: MeshColorOf,
+        /// What they are multiplied by.
+        scale: f32,
+        /// Where it was described.
+        span: Span,
+    },
+}
+
+/// Colours of a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MeshColorOf {
+    /// [`crate::MeshDesc::vertex_colors`], linear between vertices.
+    Vertices,
+    /// [`crate::MeshDesc::face_colors`].
+    Faces,
 }
 
 /// What happens between texels.
@@ -43,6 +81,9 @@ pub enum Filter {
     Nearest,
     /// Linear between the centres of four texels.
     Bilinear,
+    /// Bilinear in two copies of the image whose texels are about as large as what a pixel sees, and linear between
+    /// these.
+    Mipmap,
 }
 
 /// What happens outside the unit square.

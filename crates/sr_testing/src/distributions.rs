@@ -2,8 +2,8 @@
 
 use glam::{Vec2, Vec3};
 use sr_sampling::warp::{
-    AnyHemisphere, CosineHemisphere, SphericalRectangle, SphericalTriangle, UniformCone, UniformDisk,
-    UniformHemisphere, UniformRectangle, UniformSphere, UniformTriangle,
+    AnyHemisphere, CosineHemisphere, RegularPolygon, SphericalRectangle, SphericalTriangle, UniformCone,
+    UniformDisk, UniformHemisphere, UniformRectangle, UniformSphere, UniformTriangle,
 };
 use sr_sampling::{
     AliasTable, Discrete, Distribution, Independent, Invert, Mix2, Mixture, PiecewiseConstant1D,
@@ -163,6 +163,11 @@ fn directions(cases: &mut Cases) {
 fn surfaces(cases: &mut Cases) {
     let square = [Vec2::splat(-1.0), Vec2::splat(1.0)];
     cases.add_invertible("disk", UniformDisk, 1e-5, move |d, settings| chi2::plane(d, square, settings));
+    for (sides, rotation) in [(3, 0.1), (6, 0.0), (9, -2.0)] {
+        let polygon = RegularPolygon::new(sides, rotation).expect("a polygon");
+        let over_square = move |d: &RegularPolygon, settings| chi2::plane(d, square, settings);
+        cases.add_invertible(&format!("polygon of {sides} sides"), polygon, 1e-4, over_square);
+    }
     let corner = Vec3::new(3.0, -1.0, 2.0);
     let edges = [Vec3::new(1.0, 0.5, 0.0), Vec3::new(-0.3, 0.2, 2.0)];
     let triangle = UniformTriangle::new([corner, corner + edges[0], corner + edges[1]]).expect("a triangle");

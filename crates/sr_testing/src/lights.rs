@@ -49,8 +49,8 @@ fn environment(desc: &mut SceneDesc, image: Arc<Image>, mapping: SphereMapping) 
 /// A checkerboard of 2 × 2 squares over (u, v) in [0, 1]², bright at the origin and at the opposite corner.
 fn checkerboard(desc: &mut SceneDesc, bright: f32) -> ColorInput {
     desc.textures.push(TextureDesc::Checkerboard {
-        color0: Rgb::splat(bright),
-        color1: Rgb::ZERO,
+        color0: ColorInput::Constant(Rgb::splat(bright)),
+        color1: ColorInput::Constant(Rgb::ZERO),
         to_uv: Affine2::IDENTITY,
         span: Span::default(),
     });

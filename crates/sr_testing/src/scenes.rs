@@ -8,7 +8,8 @@ use std::sync::Arc;
 use glam::{Mat3, Mat4, Vec2, Vec3};
 use sr_scene::{
     CameraDesc, ColorInput, Emission, FilmDesc, FilterDesc, FovAxis, Geometry, Image, LightDesc,
-    MaterialDesc, MaterialId, MeshDesc, Pixels, Rgb, SceneDesc, Settings, ShapeDesc, Span, SphereMapping,
+    MaterialDesc, MaterialId, MeshDesc, Pixels, Projection, Rgb, SceneDesc, Settings, ShapeDesc, Span,
+    SphereMapping,
 };
 
 /// A scene and its answer.
@@ -33,14 +34,21 @@ pub fn camera_on_point(from: Vec3, at: Vec3) -> CameraDesc {
     let (x, y) = z.any_orthonormal_pair();
     CameraDesc {
         world_from_camera: Mat4::from_cols(x.extend(0.0), y.extend(0.0), z.extend(0.0), from.extend(1.0)),
-        fov_axis: FovAxis::X,
-        fov: 1e-4,
+        projection: Projection::Perspective {
+            fov_axis: FovAxis::X,
+            fov: 1e-4,
+            principal_point_offset: Vec2::ZERO,
+            lens: None,
+        },
         near_clip: 1e-3,
         far_clip: 1e4,
-        principal_point_offset: Vec2::ZERO,
-        aperture_radius: 0.0,
-        focus_distance: 1.0,
-        film: FilmDesc { width: 1, height: 1, filter: FilterDesc::Box { radius: 0.5 }, sample_border: false },
+        film: FilmDesc {
+            width: 1,
+            height: 1,
+            crop: None,
+            filter: FilterDesc::Box { radius: 0.5 },
+            sample_border: false,
+        },
         span: Span::default(),
     }
 }
@@ -131,6 +139,8 @@ pub fn known_scenes() -> Vec<KnownScene> {
     let mut all = vec![furnace_sphere(), furnace_box(), white_furnace()];
     all.extend(polygons());
     all.extend(spheres());
+    all.extend(cylinders());
+    all.push(white_patch());
     all.extend(skies());
     all.extend(crate::lights::known_lights());
     all.push(mirror_in_front_of_a_light());
@@ -233,6 +243,70 @@ fn polygons() -> Vec<KnownScene> {
             })
         })
         .collect()
+}
+
+fn cylinder(base: Vec3, radius: f32, length: f32, flip_normals: bool) -> Geometry {
+    Geometry::Cylinder { base, frame: Mat3::IDENTITY, radius, length, flip_normals }
+}
+
+fn cylinders() -> Vec<KnownScene> {
+    // What is seen of an upright cylinder: the half towards the origin, between two upright lines.
+    let (axis, radius, heights) = (Vec3::new(1.4, 0.5, 0.0), 0.4, [0.3, 1.5]);
+    let half_angle = (radius / axis.length()).acos();
+    let toward = (-axis.y).atan2(-axis.x);
+    let steps = 500;
+    let rim = |z: f32, i: i32| {
+        let phi = toward + half_angle * (2.0 * i as f32 / steps as f32 - 1.0);
+        axis + radius * Vec3::new(phi.cos(), phi.sin(), 0.0) + Vec3::Z * z
+    };
+    let outline: Vec<Vec3> = (0..=steps)
+        .map(|i| rim(heights[0], i))
+        .chain((0..=steps).rev().map(|i| rim(heights[1], i)))
+        .collect();
+    let outside = floor_under(
+        "floor beside a cylinder (Lambert's formula)",
+        4.0 * lambert_irradiance(&outline),
+        0.0,
+        |desc| {
+            let form = cylinder(axis + heights[0] * Vec3::Z, radius, heights[1] - heights[0], false);
+            let mut light = shape(form, Some(4.0));
+            light.material = MaterialId(2);
+            desc.shapes.push(light);
+        },
+    );
+    // a can whose side and ends shine inwards
+    let camera = camera_on_point(Vec3::new(0.1, 0.3, 0.2), Vec3::new(0.6, 0.8, 0.9));
+    let mut desc = diffuse_scene(camera, 0.5);
+    desc.shapes.push(shape(cylinder(Vec3::ZERO, 1.0, 1.5, true), Some(1.0)));
+    for (z, flip_normals) in [(0.0, false), (1.5, true)] {
+        let (u_axis, v_axis) = (Vec3::X, Vec3::Y);
+        let end = Geometry::Disk { center: z * Vec3::Z, u_axis, v_axis, flip_normals };
+        desc.shapes.push(shape(end, Some(1.0)));
+    }
+    let inside = KnownScene {
+        name: "furnace, can".into(),
+        desc,
+        radiance: Rgb::splat(2.0),
+        light_alone_converges: false,
+        found_by_chance: true,
+    };
+    vec![outside, inside]
+}
+
+/// A saddle of albedo 1 under a sky of radiance 1 cannot be told from the sky, however often light bounces in it.
+fn white_patch() -> KnownScene {
+    let camera = camera_on_point(Vec3::new(0.1, -2.0, 1.5), Vec3::new(0.1, 0.05, 0.005));
+    let mut desc = diffuse_scene(camera, 1.0);
+    let corners = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)].map(|(x, y)| Vec3::new(x, y, x * y));
+    desc.shapes.push(shape(Geometry::Patch { corners, flip_normals: false }, None));
+    desc.lights.push(LightDesc::Constant { radiance: Rgb::ONE, span: Span::default() });
+    KnownScene {
+        name: "white furnace, bilinear patch under a constant sky".into(),
+        desc,
+        radiance: Rgb::ONE,
+        light_alone_converges: true,
+        found_by_chance: true,
+    }
 }
 
 fn spheres() -> Vec<KnownScene> {

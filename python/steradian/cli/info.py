@@ -29,16 +29,13 @@ def describe(values: dict[str, Any]) -> str:
     """A few lines for people."""
     camera, film, settings = values["camera"], values["film"], values["settings"]
     depth = "unbounded" if settings["max_depth"] == -1 else f"{settings['max_depth']} edges"
-    lens = f", lens radius {camera['aperture_radius']:g}" if camera["aperture_radius"] else ""
+    crop = film["crop_of"]
+    part = "" if crop is None else f" of {crop[0]} x {crop[1]} from column {crop[2]}, row {crop[3]}"
     bounds = values["bounds"]
     rows = [
         ("scene", values["scene"]),
-        ("film", f"{film['width']} x {film['height']} pixels, {film['filter']} filter"),
-        (
-            "camera",
-            f"at {_point(camera['position'])} towards {_point(camera['direction'])}, "
-            f"{camera['fov_x_deg']:.4g} degrees wide{lens}",
-        ),
+        ("film", f"{film['width']} x {film['height']} pixels{part}, {film['filter']} filter"),
+        ("camera", _camera(camera)),
         ("asks for", f"{settings['spp']} spp, depth {depth}"),
         ("shapes", f"{values['shapes']} ({values['triangles']} triangles, {values['instances']} instances)"),
         ("materials", str(values["materials"])),
@@ -50,6 +47,17 @@ def describe(values: dict[str, Any]) -> str:
         ("warnings", str(len(values["diagnostics"]))),
     ]
     return "\n".join(f"{name:10} {text}" for name, text in rows)
+
+
+def _camera(camera: dict[str, Any]) -> str:
+    place = f"at {_point(camera['position'])} towards {_point(camera['direction'])}"
+    if camera["projection"] == "orthographic":
+        return f"{place}, orthographic, {camera['width']:.4g} wide"
+    if camera["projection"] == "spherical":
+        return f"{place}, all around"
+    blades = f" of {camera['blades']} blades" if camera["blades"] else ""
+    lens = f", lens radius {camera['aperture_radius']:g}{blades}" if camera["aperture_radius"] else ""
+    return f"{place}, {camera['fov_x_deg']:.4g} degrees wide{lens}"
 
 
 def _point(values: list[float]) -> str:

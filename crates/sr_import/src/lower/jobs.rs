@@ -5,12 +5,12 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use rayon::prelude::*;
-use sr_scene::{Diagnostic, Geometry, Image, MeshDesc, Pixels, ShapeDesc, Span};
+use sr_scene::{Diagnostic, Geometry, Image, MeshDesc, Pixels, ShapeDesc, Span, TextureDesc};
 
 use super::Lowering;
 use crate::files;
 use crate::images::{self, Decode};
-use crate::mesh::{self, Format, Placement, Report};
+use crate::mesh::{self, Format, Placement, RawMesh, Report};
 
 /// An image of the scene, read or to be read.
 pub(super) enum ImageSlot {
@@ -85,7 +85,9 @@ impl Lowering<'_, '_> {
     }
 
     pub(super) fn load_meshes(&mut self, span: &Span) {
-        let pending = std::mem::take(&mut self.meshes);
+        let mut pending = std::mem::take(&mut self.meshes);
+        let colors = self.textures.iter().any(|t| matches!(t, TextureDesc::MeshColor { .. }));
+        pending.iter_mut().for_each(|mesh| mesh.placement.colors = colors);
         let files = read_files(&pending);
         let mut placed = place_all(&pending, &files);
         let mut degenerate = Vec::new();
@@ -171,7 +173,7 @@ impl Lowering<'_, '_> {
 }
 
 /// Every distinct file, read.
-fn read_files(pending: &[PendingMesh]) -> HashMap<FileKey, Result<Arc<MeshDesc>, String>> {
+fn read_files(pending: &[PendingMesh]) -> HashMap<FileKey, Result<RawMesh, String>> {
     let mut keys: Vec<FileKey> = Vec::new();
     let mut seen = std::collections::HashSet::new();
     for mesh in pending {
@@ -184,7 +186,7 @@ fn read_files(pending: &[PendingMesh]) -> HashMap<FileKey, Result<Arc<MeshDesc>,
     }
     keys.into_par_iter()
         .map(|key| {
-            let mesh = mesh::load(&key.0, key.1, key.2).map(Arc::new);
+            let mesh = mesh::load(&key.0, key.1, key.2);
             (key, mesh)
         })
         .collect()
@@ -193,14 +195,11 @@ fn read_files(pending: &[PendingMesh]) -> HashMap<FileKey, Result<Arc<MeshDesc>,
 type Placed = Result<(Arc<MeshDesc>, Report), String>;
 
 /// Every pending mesh in place; meshes that are placed alike share their memory.
-fn place_all(
-    pending: &[PendingMesh],
-    files: &HashMap<FileKey, Result<Arc<MeshDesc>, String>>,
-) -> Vec<Placed> {
-    let raw: Vec<Result<Arc<MeshDesc>, String>> = pending
+fn place_all(pending: &[PendingMesh], files: &HashMap<FileKey, Result<RawMesh, String>>) -> Vec<Placed> {
+    let raw: Vec<Result<RawMesh, String>> = pending
         .iter()
         .map(|mesh| match &mesh.source {
-            MeshSource::Memory(desc) => Ok(desc.clone()),
+            MeshSource::Memory(desc) => Ok(RawMesh { mesh: desc.clone(), fans: [].into() }),
             MeshSource::File { path, format, flip_v } => files
                 .get(&(path.clone(), *format, *flip_v))
                 .cloned()
@@ -214,7 +213,9 @@ fn place_all(
         .zip(&raw)
         .enumerate()
         .map(|(i, (mesh, raw))| match raw {
-            Ok(raw) => *first.entry((Arc::as_ptr(raw).addr(), format!("{:?}", mesh.placement))).or_insert(i),
+            Ok(raw) => {
+                *first.entry((Arc::as_ptr(&raw.mesh).addr(), format!("{:?}", mesh.placement))).or_insert(i)
+            }
             Err(_) => i,
         })
         .collect();

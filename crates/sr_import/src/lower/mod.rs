@@ -3,8 +3,11 @@
 //! In: what a front end has read. Out: the description, if nothing was an error. Here names get their meaning;
 //! everything that a file asks for and that is not done becomes a diagnostic.
 
+mod analytic;
 mod color;
 mod emitter;
+mod film;
+mod group;
 mod jobs;
 mod material;
 mod principled;
@@ -65,6 +68,10 @@ struct Lowering<'a, 'd> {
     materials_done: HashMap<usize, MaterialId>,
     textures_done: HashMap<usize, sr_scene::ColorInput>,
     groups_done: HashMap<usize, u32>,
+    /// Per group, what is placed inside it.
+    inner_groups: Vec<Vec<group::Inner>>,
+    /// Instances so far, those inside groups counted wherever their group is shown.
+    placements: usize,
     /// Objects being lowered: meeting one again is a cycle.
     open: HashSet<usize>,
 }
@@ -94,6 +101,8 @@ impl<'a, 'd> Lowering<'a, 'd> {
             materials_done: HashMap::new(),
             textures_done: HashMap::new(),
             groups_done: HashMap::new(),
+            inner_groups: Vec::new(),
+            placements: 0,
             open: HashSet::new(),
         }
     }

@@ -1,19 +1,15 @@
-//! Sensors, films and pixel filters.
+//! Sensors.
 
 use glam::{DMat4, DVec3, Vec2};
-use sr_scene::{CameraDesc, Diagnostic, FilmDesc, FilterDesc, FovAxis, Geometry, MAX_FILM_PIXELS, Span};
+use sr_scene::{CameraDesc, Diagnostic, FovAxis, Geometry, Lens, Projection, Span};
 
 use super::Lowering;
+use super::film::default_film;
 use crate::node::Node;
 use crate::props::Props;
 use crate::{transform, values};
 
-const SENSORS: &[&str] = &["perspective", "thinlens"];
-const FILTERS: &[&str] = &["box", "tent", "gaussian"];
-/// Mitsuba's default film.
-const DEFAULT_SIZE: (u32, u32) = (768, 576);
-/// Mitsuba's default filter, cut at four standard deviations.
-const DEFAULT_FILTER: FilterDesc = FilterDesc::Gaussian { stddev: 0.5, radius: 2.0 };
+const SENSORS: &[&str] = &["perspective", "thinlens", "orthographic", "spherical"];
 
 impl<'a> Lowering<'a, '_> {
     pub(super) fn sensors(&mut self, nodes: &[&'a Node]) {
@@ -38,21 +34,21 @@ impl<'a> Lowering<'a, '_> {
             self.unknown_plugin(node, SENSORS, "a perspective camera at the same place is used");
         }
         let to_world = props.transform("to_world", self.d);
-        let (fov_axis, fov) = self.field_of_view(node, &mut props, known);
+        let near_clip = props.float("near_clip", self.d).unwrap_or(1e-2);
+        let far_clip = props.float("far_clip", self.d).unwrap_or(1e4);
+        let projection = match node.kind.as_str() {
+            "orthographic" => Projection::Orthographic,
+            "spherical" => Projection::Spherical,
+            _ => self.perspective(node, &mut props, known, far_clip),
+        };
+        if matches!(projection, Projection::Orthographic | Projection::Spherical) {
+            // Rays that do not meet in a lens are not focused.
+            props.ignore(&["focus_distance"]);
+        }
         let film = self.film(&mut props);
         if let [sampler, ..] = self.nested(&mut props, "sampler")[..] {
             self.sampler(sampler);
         }
-        let thin_lens = node.kind == "thinlens";
-        let aperture_radius =
-            if thin_lens { props.float("aperture_radius", self.d).unwrap_or(0.0) } else { 0.0 };
-        let near_clip = props.float("near_clip", self.d).unwrap_or(1e-2);
-        let far_clip = props.float("far_clip", self.d).unwrap_or(1e4);
-        let focus_distance = props.float("focus_distance", self.d).unwrap_or(far_clip);
-        let offset = Vec2::new(
-            props.float("principal_point_offset_x", self.d).unwrap_or(0.0),
-            props.float("principal_point_offset_y", self.d).unwrap_or(0.0),
-        );
         // Nothing moves: when the shutter is open does not matter.
         props.ignore(&["shutter_open", "shutter_close"]);
         for medium in self.nested(&mut props, "medium") {
@@ -64,16 +60,34 @@ impl<'a> Lowering<'a, '_> {
         props.finish(self.d);
         self.camera = Some(CameraDesc {
             world_from_camera: to_world.as_mat4(),
-            fov_axis,
-            fov,
+            projection,
             near_clip,
             far_clip,
-            principal_point_offset: offset,
-            aperture_radius,
-            focus_distance,
             film,
             span: node.span.clone(),
         });
+    }
+
+    fn perspective(
+        &mut self,
+        node: &'a Node,
+        props: &mut Props<'a>,
+        known: bool,
+        far_clip: f32,
+    ) -> Projection {
+        let (fov_axis, fov) = self.field_of_view(node, props, known);
+        let focus_distance = props.float("focus_distance", self.d).unwrap_or(far_clip);
+        let principal_point_offset = Vec2::new(
+            props.float("principal_point_offset_x", self.d).unwrap_or(0.0),
+            props.float("principal_point_offset_y", self.d).unwrap_or(0.0),
+        );
+        let lens = (node.kind == "thinlens").then(|| Lens {
+            aperture_radius: props.float("aperture_radius", self.d).unwrap_or(0.0),
+            focus_distance,
+            blades: self.count(props, node, "blades", 0),
+            blade_rotation: props.float("blade_rotation", self.d).unwrap_or(0.0).to_radians(),
+        });
+        Projection::Perspective { fov_axis, fov, principal_point_offset, lens }
     }
 
     /// `fov` along `fov_axis`, or a `focal_length` for 36 × 24 mm film.
@@ -120,79 +134,8 @@ impl<'a> Lowering<'a, '_> {
         (FovAxis::Diagonal, 2.0 * (0.5 * 36f32.hypot(24.0) / 50.0).atan())
     }
 
-    fn film(&mut self, props: &mut Props<'a>) -> FilmDesc {
-        let (width, height) = DEFAULT_SIZE;
-        let mut film = FilmDesc { width, height, filter: DEFAULT_FILTER, sample_border: false };
-        let [node, ..] = self.nested(props, "film")[..] else { return film };
-        let mut props = Props::new(node);
-        if !matches!(node.kind.as_str(), "hdrfilm" | "ldrfilm") {
-            self.unknown_plugin(node, &["hdrfilm"], "its size and filter are used, the rest is ignored");
-        }
-        let sizes = [("width", width), ("height", height)].map(|(name, default)| {
-            let size = props.integer(name, self.d).unwrap_or(default.into());
-            u32::try_from(size).unwrap_or_else(|_| {
-                let message =
-                    format!("a film's {name} of {size}; at most {MAX_FILM_PIXELS} pixels are possible");
-                self.d.push(Diagnostic::error("scene::film-size", &node.span, message));
-                default
-            })
-        });
-        [film.width, film.height] = sizes;
-        film.sample_border = props
-            .boolean("sample_border", self.d)
-            .or(props.boolean("high_quality_edges", self.d))
-            .unwrap_or(false);
-        props.unsupported(
-            &["crop_width", "crop_height", "crop_offset_x", "crop_offset_y", "size"],
-            "the whole film is rendered",
-            self.d,
-        );
-        // How a file is written is decided when it is written.
-        props.ignore(&[
-            "banner",
-            "pixel_format",
-            "component_format",
-            "file_format",
-            "compensate",
-            "attach_log",
-            "gamma",
-            "exposure",
-            "tonemap_method",
-            "key",
-            "burn",
-        ]);
-        if let [filter, ..] = self.nested(&mut props, "rfilter")[..] {
-            film.filter = self.filter(filter);
-        }
-        if !matches!(node.kind.as_str(), "hdrfilm" | "ldrfilm") {
-            props.use_all();
-        }
-        props.finish(self.d);
-        film
-    }
-
-    fn filter(&mut self, node: &'a Node) -> FilterDesc {
-        let mut props = Props::new(node);
-        let filter = match node.kind.as_str() {
-            "box" => FilterDesc::Box { radius: props.float("radius", self.d).unwrap_or(0.5) },
-            "tent" => FilterDesc::Tent { radius: props.float("radius", self.d).unwrap_or(1.0) },
-            "gaussian" => {
-                let stddev = props.float("stddev", self.d).unwrap_or(0.5);
-                FilterDesc::Gaussian { stddev, radius: 4.0 * stddev }
-            }
-            _ => {
-                self.unknown_plugin(node, FILTERS, "a Gaussian of standard deviation 0.5 pixels is used");
-                props.use_all();
-                DEFAULT_FILTER
-            }
-        };
-        props.finish(self.d);
-        filter
-    }
-
     /// A camera in front of the scene, far enough back to see all of it.
     pub(super) fn default_camera(&self, span: &Span) -> CameraDesc {
-        let (width, height) = DEFAULT_SIZE;
         let fov = 45f64.to_radians();
         let mut bounds = Bounds { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
         self.shapes.iter().for_each(|shape| bounds.add_geometry(&shape.geometry, &DMat4::IDENTITY));
@@ -211,14 +154,15 @@ impl<'a> Lowering<'a, '_> {
             .as_mat4();
         CameraDesc {
             world_from_camera,
-            fov_axis: FovAxis::Smaller,
-            fov: fov as f32,
+            projection: Projection::Perspective {
+                fov_axis: FovAxis::Smaller,
+                fov: fov as f32,
+                principal_point_offset: Vec2::ZERO,
+                lens: None,
+            },
             near_clip: (1e-4 * distance) as f32,
             far_clip: (10.0 * distance) as f32,
-            principal_point_offset: Vec2::ZERO,
-            aperture_radius: 0.0,
-            focus_distance: distance as f32,
-            film: FilmDesc { width, height, filter: DEFAULT_FILTER, sample_border: false },
+            film: default_film(),
             span: span.clone(),
         }
     }
@@ -244,6 +188,15 @@ impl Bounds {
                     glam::Vec3::AXES.iter().for_each(|&axis| add(*center + sign * *radius * axis));
                 }
             }
+            Geometry::Cylinder { base, frame, radius, length, .. } => {
+                for z in [0.0, *length] {
+                    let center = *base + z * frame.z_axis;
+                    for axis in [frame.x_axis, -frame.x_axis, frame.y_axis, -frame.y_axis] {
+                        add(center + *radius * axis);
+                    }
+                }
+            }
+            Geometry::Patch { corners, .. } => corners.iter().for_each(|&p| add(p)),
             Geometry::Disk { center, u_axis, v_axis, .. } => {
                 for axis in [*u_axis, -*u_axis, *v_axis, -*v_axis] {
                     add(*center + axis);

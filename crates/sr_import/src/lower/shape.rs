@@ -1,20 +1,31 @@
-//! Shapes, groups of shapes, and instances of groups.
+//! Shapes: what they are made of, what they emit, and where their meshes come from.
 
 use std::sync::Arc;
 
-use glam::{Affine3A, DMat3, DVec3};
-use sr_scene::{Diagnostic, Emission, Geometry, GroupDesc, InstanceDesc, Rgb, ShapeDesc};
+use sr_scene::{Diagnostic, Emission, Geometry, Rgb, ShapeDesc};
 
+use super::Lowering;
 use super::color::Role;
 use super::jobs::{MeshSource, PendingMesh, ShapeSlot};
-use super::{Lowering, key};
 use crate::files;
-use crate::mesh::{Format, Placement, primitives};
+use crate::mesh::{Format, Placement, Scheme, Subdivision, primitives};
 use crate::node::{Node, Value};
 use crate::props::Props;
 
-const KNOWN: &[&str] =
-    &["obj", "ply", "serialized", "mesh", "rectangle", "cube", "sphere", "disk", "shapegroup", "instance"];
+const KNOWN: &[&str] = &[
+    "obj",
+    "ply",
+    "serialized",
+    "mesh",
+    "rectangle",
+    "cube",
+    "sphere",
+    "disk",
+    "cylinder",
+    "bilinearpatch",
+    "shapegroup",
+    "instance",
+];
 
 /// A shape's form, known or still to be read.
 enum Form {
@@ -41,13 +52,18 @@ impl<'a> Lowering<'a, '_> {
         }
     }
 
-    fn add_pending(&mut self, pending: Option<(MeshSource, Placement)>, shape: ShapeSlot, node: &Node) {
+    pub(super) fn add_pending(
+        &mut self,
+        pending: Option<(MeshSource, Placement)>,
+        shape: ShapeSlot,
+        node: &Node,
+    ) {
         if let Some((source, placement)) = pending {
             self.meshes.push(PendingMesh { shape, source, placement, span: node.span.clone() });
         }
     }
 
-    fn shape(&mut self, node: &'a Node) -> Option<(ShapeDesc, Option<(MeshSource, Placement)>)> {
+    pub(super) fn shape(&mut self, node: &'a Node) -> Option<(ShapeDesc, Option<(MeshSource, Placement)>)> {
         let mut props = Props::new(node);
         let Some(form) = self.form(node, &mut props) else {
             props.use_all();
@@ -66,7 +82,14 @@ impl<'a> Lowering<'a, '_> {
                 self.material(first)
             }
         };
-        let emission = self.emission(&mut props);
+        let mut emission = self.emission(&mut props);
+        if emission.is_some() && node.kind == "bilinearpatch" {
+            self.d.push(
+                Diagnostic::warning("mitsuba::emitting-patch", &node.span, "a bilinear patch cannot emit")
+                    .consequence("it is rendered without its emitter"),
+            );
+            emission = None;
+        }
         for name in ["interior", "exterior"] {
             if let Some(child) = props.child(name)
                 && let Some(medium) = self.resolve(child)
@@ -114,8 +137,10 @@ impl<'a> Lowering<'a, '_> {
 
     fn form(&mut self, node: &'a Node, props: &mut Props<'a>) -> Option<Form> {
         match node.kind.as_str() {
-            "sphere" => Some(self.sphere(node, props)),
-            "disk" => Some(self.disk(node, props)),
+            "sphere" => Some(Form::Ready(self.sphere(node, props))),
+            "disk" => Some(Form::Ready(self.disk(node, props))),
+            "cylinder" => Some(Form::Ready(self.cylinder(node, props))),
+            "bilinearpatch" => Some(Form::Ready(self.patch(props))),
             "rectangle" => {
                 let placement = Placement { flat: true, ..self.placement(props) };
                 Some(Form::Mesh(MeshSource::Memory(Arc::new(primitives::rectangle())), placement))
@@ -177,114 +202,30 @@ impl<'a> Lowering<'a, '_> {
     }
 
     fn placement(&mut self, props: &mut Props<'a>) -> Placement {
+        let subdivision = self.subdivision(props);
         Placement {
+            subdivision,
             to_world: props.transform("to_world", self.d),
             face_normals: props.boolean("face_normals", self.d).unwrap_or(false),
             flip_normals: props.boolean("flip_normals", self.d).unwrap_or(false),
             max_smooth_angle: props.float("max_smooth_angle", self.d).map(f32::to_radians),
             flat: false,
+            // Known when all textures are.
+            colors: false,
         }
     }
 
-    fn sphere(&mut self, node: &'a Node, props: &mut Props<'a>) -> Form {
-        let center = props.vector("center", self.d).unwrap_or(DVec3::ZERO);
-        let radius = f64::from(props.float("radius", self.d).unwrap_or(1.0));
-        let to_world = props.transform("to_world", self.d);
-        let flip_normals = props.boolean("flip_normals", self.d).unwrap_or(false);
-        let linear = DMat3::from_mat4(to_world);
-        let scale = linear.x_axis.length();
-        let frame = DMat3::from_cols(linear.x_axis / scale, linear.y_axis / scale, linear.z_axis / scale);
-        if !is_orthonormal(frame) {
-            self.d.push(
-                Diagnostic::warning(
-                    "mitsuba::sphere-transform",
-                    &node.span,
-                    "the transform of a sphere is not a similarity",
-                )
-                .consequence(format!("it stays a sphere, scaled by {scale} as its x-axis is")),
-            );
-        }
-        Form::Ready(Geometry::Sphere {
-            center: to_world.transform_point3(center).as_vec3(),
-            radius: (radius * scale) as f32,
-            frame: frame.as_mat3(),
-            flip_normals: flip_normals ^ (linear.determinant() < 0.0),
-        })
-    }
-
-    fn disk(&mut self, node: &'a Node, props: &mut Props<'a>) -> Form {
-        let to_world = props.transform("to_world", self.d);
-        let flip_normals = props.boolean("flip_normals", self.d).unwrap_or(false);
-        let linear = DMat3::from_mat4(to_world);
-        let (u, v) = (linear.x_axis, linear.y_axis);
-        if u.dot(v).abs() > 1e-4 * u.length() * v.length() {
-            self.d.push(
-                Diagnostic::warning(
-                    "mitsuba::disk-transform",
-                    &node.span,
-                    "the transform of a disk is a shear",
-                )
-                .consequence("it is rendered with its axes as they are, which Mitsuba does not allow"),
-            );
-        }
-        Form::Ready(Geometry::Disk {
-            center: to_world.w_axis.truncate().as_vec3(),
-            u_axis: u.as_vec3(),
-            v_axis: v.as_vec3(),
-            flip_normals: flip_normals ^ (linear.determinant() < 0.0),
-        })
-    }
-
-    fn group(&mut self, node: &'a Node) -> u32 {
-        if let Some(&done) = self.groups_done.get(&key(node)) {
-            return done;
-        }
-        let index = self.groups.len();
-        self.groups.push(GroupDesc { shapes: Vec::new() });
-        self.groups_done.insert(key(node), index as u32);
-        let mut props = Props::new(node);
-        for child in self.nested(&mut props, "shape") {
-            let Some((mut shape, pending)) = self.shape(child) else { continue };
-            if shape.emission.take().is_some() {
-                self.d.push(
-                    Diagnostic::warning(
-                        "mitsuba::emitter-in-group",
-                        &child.span,
-                        "a shape of a group cannot emit",
-                    )
-                    .consequence("it is rendered without its emitter"),
-                );
+    /// `subdivide`, how often, and `scheme`: of our own.
+    fn subdivision(&mut self, props: &mut Props<'a>) -> Option<Subdivision> {
+        let levels = self.count(props, props.node, "subdivide", 0);
+        let scheme = match props.string("scheme", self.d) {
+            None | Some(("loop", _)) => Scheme::Loop,
+            Some(("catmull_clark", _)) => Scheme::CatmullClark,
+            Some((other, span)) => {
+                self.unknown_word("scheme", other, &["loop", "catmull_clark"], "loop", span);
+                Scheme::Loop
             }
-            let slot = ShapeSlot::Group(index, self.groups[index].shapes.len());
-            self.groups[index].shapes.push(shape);
-            self.add_pending(pending, slot, child);
-        }
-        props.finish(self.d);
-        index as u32
-    }
-
-    fn instance(&mut self, node: &'a Node) {
-        let mut props = Props::new(node);
-        let to_world = props.transform("to_world", self.d);
-        let groups = self.nested(&mut props, "shape");
-        props.finish(self.d);
-        let [group] = groups[..] else {
-            let message = format!("{} needs one shape group, not {}", node.title(), groups.len());
-            self.d.push(Diagnostic::error("mitsuba::wrong-nesting", &node.span, message));
-            return;
         };
-        if group.kind != "shapegroup" {
-            let message = format!("an instance shows a shape group, not {}", group.title());
-            self.d.push(Diagnostic::error("mitsuba::wrong-nesting", &node.span, message));
-            return;
-        }
-        let group = self.group(group);
-        let world_from_group = Affine3A::from_mat4(to_world.as_mat4());
-        self.instances.push(InstanceDesc { group, world_from_group, span: node.span.clone() });
+        (levels > 0).then_some(Subdivision { scheme, levels })
     }
-}
-
-/// Are the columns of unit length and perpendicular, to the precision that files are written with?
-pub(super) fn is_orthonormal(m: DMat3) -> bool {
-    (m.transpose() * m - DMat3::IDENTITY).to_cols_array().iter().all(|v| v.abs() < 1e-3)
 }

@@ -153,7 +153,7 @@ impl<'a> Lowering<'a, '_> {
         let linear = DMat3::from_mat4(to_world);
         let columns = [linear.x_axis, linear.y_axis, linear.z_axis].map(DVec3::normalize_or_zero);
         let rotation = DMat3::from_cols(columns[0], columns[1], columns[2]);
-        if super::shape::is_orthonormal(rotation) {
+        if super::analytic::is_orthonormal(rotation) {
             return Some(rotation);
         }
         let message = format!("the transform of {what} is more than a rotation and a scale");

@@ -1,7 +1,7 @@
-//! Textures: bitmaps, checkerboards, and spectra that are written as objects.
+//! Textures: bitmaps, checkerboards, what is made of others, and spectra that are written as objects.
 
 use glam::{Affine2, DMat4, DVec3, Mat2, Vec2};
-use sr_scene::{ColorInput, Diagnostic, Filter, Rgb, Span, TextureDesc, TextureId, Wrap};
+use sr_scene::{ColorInput, Diagnostic, Filter, MeshColorOf, Rgb, Span, TextureDesc, TextureId, Wrap};
 
 use super::color::Role;
 use super::{Lowering, key};
@@ -13,6 +13,9 @@ use crate::values;
 const KNOWN: &[&str] = &[
     "bitmap",
     "checkerboard",
+    "scale",
+    "mix",
+    "mesh_attribute",
     "uniform",
     "constant",
     "rgb",
@@ -55,11 +58,27 @@ impl<'a> Lowering<'a, '_> {
             "bitmap" => self.bitmap(node, props),
             "checkerboard" => {
                 props.unsupported(&["line_width"], "there are no lines", self.d);
-                let color0 = self.constant_color(props, "color0", Rgb::splat(0.4), role);
-                let color1 = self.constant_color(props, "color1", Rgb::splat(0.2), role);
+                let color0 = self.color(props, "color0", Rgb::splat(0.4), role);
+                let color1 = self.color(props, "color1", Rgb::splat(0.2), role);
                 let to_uv = self.uv_transform(props);
                 self.add_texture(TextureDesc::Checkerboard { color0, color1, to_uv, span: node.span.clone() })
             }
+            "scale" => {
+                // First: what is left is scaled.
+                let factor = self.color(props, "scale", Rgb::ONE, Role::Factor);
+                let input = match self.nested(props, "texture")[..] {
+                    [] => self.color(props, "texture", Rgb::ONE, role),
+                    [input, ..] => self.texture(input, role),
+                };
+                self.add_texture(TextureDesc::Scale { input, factor, span: node.span.clone() })
+            }
+            "mix" => {
+                let color0 = self.color(props, "color0", Rgb::ZERO, role);
+                let color1 = self.color(props, "color1", Rgb::ONE, role);
+                let weight = self.scalar(props, "weight", 0.5);
+                self.add_texture(TextureDesc::Mix { color0, color1, weight, span: node.span.clone() })
+            }
+            "mesh_attribute" => self.mesh_attribute(node, props),
             "uniform" | "constant" => self.color(props, "value", Rgb::ONE, role),
             "rgb" | "srgb" => {
                 let name = if props.has("color") { "color" } else { "value" };
@@ -130,8 +149,9 @@ impl<'a> Lowering<'a, '_> {
         let filter = match props.string("filter_type", self.d) {
             None | Some(("bilinear", _)) => Filter::Bilinear,
             Some(("nearest", _)) => Filter::Nearest,
+            Some(("mipmap", _)) => Filter::Mipmap,
             Some((other, span)) => {
-                self.unknown_word("filter type", other, &["bilinear", "nearest"], "bilinear", span);
+                self.unknown_word("filter type", other, &["bilinear", "nearest", "mipmap"], "bilinear", span);
                 Filter::Bilinear
             }
         };
@@ -172,6 +192,29 @@ impl<'a> Lowering<'a, '_> {
             to_uv,
             span: node.span.clone(),
         })
+    }
+
+    fn mesh_attribute(&mut self, node: &'a Node, props: &mut Props<'a>) -> ColorInput {
+        let scale = props.float("scale", self.d).unwrap_or(1.0);
+        let of = match props.string("name", self.d) {
+            Some(("vertex_color", _)) => MeshColorOf::Vertices,
+            Some(("face_color", _)) => MeshColorOf::Faces,
+            Some((other, span)) => {
+                let message = format!("the mesh attribute \"{}\" is not read", values::shown(other));
+                self.d.push(
+                    Diagnostic::warning("mitsuba::unknown-value", span, message)
+                        .guess(other, ["vertex_color", "face_color"])
+                        .consequence("the constant 0.5 is used"),
+                );
+                return ColorInput::Constant(STAND_IN);
+            }
+            None => {
+                let message = format!("{} needs a \"name\"", node.title());
+                self.d.push(Diagnostic::error("mitsuba::missing-property", &node.span, message));
+                return ColorInput::Constant(STAND_IN);
+            }
+        };
+        self.add_texture(TextureDesc::MeshColor { of, scale, span: node.span.clone() })
     }
 
     /// The image that a node names by `filename`, or holds as `bitmap` or `data`.

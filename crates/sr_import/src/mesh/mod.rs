@@ -6,10 +6,13 @@ mod place;
 mod ply;
 pub mod primitives;
 mod serialized;
+mod subdivide;
 
 pub use place::{Placement, Report, place};
+pub use subdivide::{Scheme, Subdivision};
 
 use std::path::Path;
+use std::sync::Arc;
 
 use sr_scene::MeshDesc;
 
@@ -33,18 +36,47 @@ pub enum Format {
 }
 
 /// Reads a file; the error is half a sentence.
-pub fn load(path: &Path, format: Format, flip_v: bool) -> Result<MeshDesc, String> {
+pub fn load(path: &Path, format: Format, flip_v: bool) -> Result<RawMesh, String> {
     let bytes = files::read(path, files::MAX_FILE_BYTES)?;
+    let mut fans = Fans::default();
     let mut mesh = match format {
-        Format::Obj => obj::parse(&bytes)?,
-        Format::Ply => ply::parse(&bytes)?,
+        Format::Obj => obj::parse(&bytes, &mut fans)?,
+        Format::Ply => ply::parse(&bytes, &mut fans)?,
         Format::Serialized { index } => serialized::parse(&bytes, index)?,
     };
     mesh.name = path.display().to_string();
     if flip_v {
         mesh.uvs.iter_mut().for_each(|uv| uv.y = 1.0 - uv.y);
     }
-    Ok(mesh)
+    Ok(RawMesh { mesh: Arc::new(mesh), fans: fans.0.into() })
+}
+
+/// A mesh as it was read.
+#[derive(Clone, Debug)]
+pub struct RawMesh {
+    /// The mesh.
+    pub mesh: Arc<MeshDesc>,
+    /// How many of its triangles each polygon was made into, one after another; empty if every polygon is a triangle.
+    pub fans: Arc<[u32]>,
+}
+
+/// [`RawMesh::fans`] as they grow: nothing is kept as long as there are triangles only.
+#[derive(Debug, Default)]
+struct Fans(Vec<u32>);
+
+impl Fans {
+    /// A polygon's triangles, as a fan about its first corner.
+    fn add(&mut self, corners: &[u32], triangles: &mut Vec<[u32; 3]>) {
+        let before = triangles.len();
+        fan(corners, triangles);
+        let count = triangles.len() - before;
+        if self.0.is_empty() && count != 1 {
+            self.0 = vec![1; before];
+        }
+        if !self.0.is_empty() || count != 1 {
+            self.0.push(count as u32);
+        }
+    }
 }
 
 /// A polygon's triangles, as a fan about its first corner.

@@ -60,6 +60,9 @@ pub fn crease(mesh: &mut MeshDesc, max_angle: f32) {
     if !mesh.uvs.is_empty() {
         mesh.uvs = source.iter().map(|&i| mesh.uvs[i as usize]).collect();
     }
+    if !mesh.vertex_colors.is_empty() {
+        mesh.vertex_colors = source.iter().map(|&i| mesh.vertex_colors[i as usize]).collect();
+    }
     mesh.normals = sums.into_iter().map(Vec3::normalize_or_zero).collect();
 }
 

@@ -5,20 +5,20 @@ use std::collections::HashMap;
 use glam::{Vec2, Vec3};
 use sr_scene::MeshDesc;
 
-use super::{MAX_ELEMENTS, fan};
+use super::{Fans, MAX_ELEMENTS};
 use crate::values::shown;
 
 /// Indices of a corner into the file's lists, from 0.
 type Corner = (u32, Option<u32>, Option<u32>);
 
 /// Parses a file. Corners that share all indices share a vertex, as in Mitsuba.
-pub fn parse(bytes: &[u8]) -> Result<MeshDesc, String> {
+pub fn parse(bytes: &[u8], fans: &mut Fans) -> Result<MeshDesc, String> {
     let mut reader = Reader::default();
     for (number, line) in bytes.split(|&b| b == b'\n').enumerate() {
         // Comments and names may be in any encoding; what is read is ASCII.
         let line = String::from_utf8_lossy(line);
         let line = line.split('#').next().unwrap_or("");
-        reader.line(line).map_err(|reason| format!("line {}: {reason}", number + 1))?;
+        reader.line(line, fans).map_err(|reason| format!("line {}: {reason}", number + 1))?;
     }
     Ok(reader.finish())
 }
@@ -35,7 +35,7 @@ struct Reader {
 }
 
 impl Reader {
-    fn line(&mut self, line: &str) -> Result<(), String> {
+    fn line(&mut self, line: &str, fans: &mut Fans) -> Result<(), String> {
         let mut words = line.split_ascii_whitespace();
         match words.next() {
             Some("v") => self.positions.push(Vec3::from(floats(&mut words)?)),
@@ -45,7 +45,7 @@ impl Reader {
                 // A missing v is 0 by the format's definition.
                 self.uvs.push(Vec2::new(float(u)?, words.next().map_or(Ok(0.0), float)?));
             }
-            Some("f") => self.face(words)?,
+            Some("f") => self.face(words, fans)?,
             _ => {}
         }
         if self.positions.len().max(self.normals.len()).max(self.uvs.len()).max(self.triangles.len())
@@ -56,7 +56,7 @@ impl Reader {
         Ok(())
     }
 
-    fn face<'a>(&mut self, words: impl Iterator<Item = &'a str>) -> Result<(), String> {
+    fn face<'a>(&mut self, words: impl Iterator<Item = &'a str>, fans: &mut Fans) -> Result<(), String> {
         self.polygon.clear();
         for word in words {
             let mut parts = word.split('/');
@@ -75,7 +75,7 @@ impl Reader {
         if self.polygon.len() < 3 {
             return Err(format!("a face needs three corners, not {}", self.polygon.len()));
         }
-        fan(&self.polygon, &mut self.triangles);
+        fans.add(&self.polygon, &mut self.triangles);
         Ok(())
     }
 
@@ -93,7 +93,7 @@ impl Reader {
         } else {
             Vec::new()
         };
-        MeshDesc { name: String::new(), positions, normals, uvs, triangles }
+        MeshDesc { positions, normals, uvs, triangles, ..MeshDesc::default() }
     }
 }
 
@@ -127,8 +127,10 @@ mod tests {
     fn polygons_negative_indices_and_shared_positions() {
         let text =
             "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 1\nf 1/1 2/1 3/1 4/1\nf -4/2 -3/1 -2/1\n";
-        let mesh = parse(text.as_bytes()).unwrap();
+        let mut fans = Fans::default();
+        let mesh = parse(text.as_bytes(), &mut fans).unwrap();
         assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3], [4, 1, 2]]);
+        assert_eq!(fans.0, [2, 1]);
         assert_eq!(mesh.positions[4], mesh.positions[0]);
         assert_eq!(mesh.uvs[4], Vec2::ONE);
         assert!(mesh.normals.is_empty());
@@ -136,7 +138,8 @@ mod tests {
 
     #[test]
     fn normals_without_texture_coordinates() {
-        let mesh = parse(b"v 0 0 0\nv 1 0 0\nv 1 1 0\nvn 0 0 1\nf 1//1 2//1 3//1").unwrap();
+        let mesh =
+            parse(b"v 0 0 0\nv 1 0 0\nv 1 1 0\nvn 0 0 1\nf 1//1 2//1 3//1", &mut Fans::default()).unwrap();
         assert_eq!(mesh.normals, [Vec3::Z; 3]);
         assert!(mesh.uvs.is_empty());
     }
@@ -151,7 +154,7 @@ mod tests {
             ("v 0 0 0\nf 0 1 1\n", "vertex 0"),
             ("v 0 0 0\nf -9223372036854775808 1 1\n", "does not exist"),
         ] {
-            let error = parse(text.as_bytes()).unwrap_err();
+            let error = parse(text.as_bytes(), &mut Fans::default()).unwrap_err();
             assert!(error.contains(part), "{error}");
         }
     }

@@ -3,7 +3,8 @@
 use glam::{DMat3, DMat4, Vec3};
 use sr_scene::MeshDesc;
 
-use super::normals;
+use super::subdivide::{Subdivision, subdivide};
+use super::{RawMesh, normals};
 
 /// What a scene file asks of a mesh.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,6 +19,10 @@ pub struct Placement {
     pub max_smooth_angle: Option<f32>,
     /// The mesh is flat by construction: its normals only tell the front.
     pub flat: bool,
+    /// The mesh is the control mesh of a subdivision surface.
+    pub subdivision: Option<Subdivision>,
+    /// Are the mesh's colors wanted?
+    pub colors: bool,
 }
 
 /// What was noticed on the way.
@@ -34,8 +39,15 @@ pub struct Report {
 /// Orientation follows Mitsuba: the front is where vertex normals point (transformed by the inverse
 /// transpose), and without them where the *transformed* corners turn counter-clockwise, so that a mirroring
 /// transform swaps the sides of a mesh without normals.
-pub fn place(mesh: &MeshDesc, placement: &Placement) -> Result<(MeshDesc, Report), String> {
+pub fn place(RawMesh { mesh, fans }: &RawMesh, placement: &Placement) -> Result<(MeshDesc, Report), String> {
     check(mesh)?;
+    if let Some(how) = placement.subdivision {
+        return placed(&subdivide(mesh, fans, how)?, &Placement { flat: false, ..placement.clone() });
+    }
+    placed(mesh, placement)
+}
+
+fn placed(mesh: &MeshDesc, placement: &Placement) -> Result<(MeshDesc, Report), String> {
     let Placement { to_world, .. } = *placement;
     let linear = DMat3::from_mat4(to_world);
     let positions: Vec<Vec3> =
@@ -44,17 +56,22 @@ pub fn place(mesh: &MeshDesc, placement: &Placement) -> Result<(MeshDesc, Report
         return Err(format!("vertex {vertex} is out of range after its transform"));
     }
     let mut report = Report::default();
-    let mut out =
-        MeshDesc { name: mesh.name.clone(), positions, uvs: mesh.uvs.clone(), ..MeshDesc::default() };
+    let mut out = MeshDesc {
+        name: mesh.name.clone(),
+        positions,
+        uvs: mesh.uvs.clone(),
+        vertex_colors: if placement.colors { mesh.vertex_colors.clone() } else { Vec::new() },
+        ..MeshDesc::default()
+    };
     let keeps_normals =
         !mesh.normals.is_empty() && !placement.face_normals && placement.max_smooth_angle.is_none();
     let mirrored = keeps_normals && linear.determinant() < 0.0;
-    out.triangles = mesh
-        .triangles
-        .iter()
-        .map(|&[a, b, c]| if mirrored { [a, c, b] } else { [a, b, c] })
-        .filter(|t| has_area(t.map(|i| out.positions[i as usize])))
-        .collect();
+    for (index, &[a, b, c]) in mesh.triangles.iter().enumerate() {
+        if has_area([a, b, c].map(|i| out.positions[i as usize])) {
+            out.triangles.push(if mirrored { [a, c, b] } else { [a, b, c] });
+            out.face_colors.extend(mesh.face_colors.get(index).filter(|_| placement.colors));
+        }
+    }
     report.degenerate = mesh.triangles.len() - out.triangles.len();
     if placement.face_normals || placement.flat {
         // Flat shading needs no normals.
@@ -80,10 +97,18 @@ pub fn place(mesh: &MeshDesc, placement: &Placement) -> Result<(MeshDesc, Report
 
 fn check(mesh: &MeshDesc) -> Result<(), String> {
     let n = mesh.positions.len();
-    for (len, what) in [(mesh.normals.len(), "normals"), (mesh.uvs.len(), "texture coordinates")] {
+    for (len, what) in [
+        (mesh.normals.len(), "normals"),
+        (mesh.uvs.len(), "texture coordinates"),
+        (mesh.vertex_colors.len(), "colors"),
+    ] {
         if len != 0 && len != n {
             return Err(format!("it has {len} {what} for {n} vertices"));
         }
+    }
+    let colors = mesh.vertex_colors.iter().chain(&mesh.face_colors);
+    if colors.into_iter().any(|c| !(c.is_finite() && c.min_element() >= 0.0)) {
+        return Err("it has a color with negative or infinite parts".into());
     }
     if let Some(vertex) = mesh.positions.iter().position(|p| !p.is_finite()) {
         return Err(format!("vertex {vertex} is {}, which is not finite", mesh.positions[vertex]));
@@ -130,7 +155,19 @@ mod tests {
     use crate::mesh::primitives;
 
     fn placement(to_world: DMat4) -> Placement {
-        Placement { to_world, face_normals: false, flip_normals: false, max_smooth_angle: None, flat: false }
+        Placement {
+            to_world,
+            face_normals: false,
+            flip_normals: false,
+            max_smooth_angle: None,
+            flat: false,
+            subdivision: None,
+            colors: true,
+        }
+    }
+
+    fn raw_placed(mesh: &MeshDesc, placement: &Placement) -> Result<(MeshDesc, Report), String> {
+        place(&RawMesh { mesh: std::sync::Arc::new(mesh.clone()), fans: [].into() }, placement)
     }
 
     fn geometric(mesh: &MeshDesc, t: usize) -> Vec3 {
@@ -141,13 +178,13 @@ mod tests {
     #[test]
     fn a_mirrored_mesh_keeps_the_front_that_its_normals_tell() {
         let mirror = DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0));
-        let (cube, _) = place(&primitives::cube(), &placement(mirror)).unwrap();
+        let (cube, _) = placed(&primitives::cube(), &placement(mirror)).unwrap();
         for t in 0..12 {
             assert!(geometric(&cube, t).dot(cube.positions[cube.triangles[t][0] as usize]) > 0.0);
         }
         // Without normals Mitsuba's front turns with the corners.
         let (square, _) =
-            place(&primitives::rectangle(), &Placement { flat: true, ..placement(mirror) }).unwrap();
+            placed(&primitives::rectangle(), &Placement { flat: true, ..placement(mirror) }).unwrap();
         assert_eq!(geometric(&square, 0), Vec3::NEG_Z);
         assert!(square.normals.is_empty());
     }
@@ -156,7 +193,7 @@ mod tests {
     fn normals_stay_perpendicular_under_shear_and_scale() {
         let shear =
             DMat4::from_cols_array(&[1., 0., 0., 0., 2., 3., 0., 0., 0., 0., -0.5, 0., 0., 0., 0., 1.]);
-        let (cube, report) = place(&primitives::cube(), &placement(shear)).unwrap();
+        let (cube, report) = placed(&primitives::cube(), &placement(shear)).unwrap();
         assert_eq!(report, Report::default());
         for (t, corners) in cube.triangles.iter().enumerate() {
             assert!((geometric(&cube, t) - cube.normals[corners[0] as usize]).length() < 1e-6);
@@ -166,7 +203,7 @@ mod tests {
     #[test]
     fn flipping_turns_corners_and_normals() {
         let flip = Placement { flip_normals: true, ..placement(DMat4::IDENTITY) };
-        let (cube, _) = place(&primitives::cube(), &flip).unwrap();
+        let (cube, _) = placed(&primitives::cube(), &flip).unwrap();
         assert_eq!(geometric(&cube, 0), Vec3::Y);
         assert_eq!(cube.normals[0], Vec3::Y);
     }
@@ -175,11 +212,11 @@ mod tests {
     fn bad_meshes() {
         let mut mesh = primitives::rectangle();
         mesh.triangles.push([0, 0, 1]);
-        assert_eq!(place(&mesh, &placement(DMat4::IDENTITY)).unwrap().1.degenerate, 1);
+        assert_eq!(raw_placed(&mesh, &placement(DMat4::IDENTITY)).unwrap().1.degenerate, 1);
         mesh.triangles.push([0, 1, 4]);
-        assert!(place(&mesh, &placement(DMat4::IDENTITY)).unwrap_err().contains("triangle 3"));
+        assert!(raw_placed(&mesh, &placement(DMat4::IDENTITY)).unwrap_err().contains("triangle 3"));
         mesh.triangles.pop();
         mesh.positions[2].y = f32::NAN;
-        assert!(place(&mesh, &placement(DMat4::IDENTITY)).unwrap_err().contains("vertex 2"));
+        assert!(raw_placed(&mesh, &placement(DMat4::IDENTITY)).unwrap_err().contains("vertex 2"));
     }
 }

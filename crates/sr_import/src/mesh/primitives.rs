@@ -13,6 +13,7 @@ pub fn rectangle() -> MeshDesc {
         normals: Vec::new(),
         uvs,
         triangles: vec![[0, 1, 2], [0, 2, 3]],
+        ..MeshDesc::default()
     }
 }
 

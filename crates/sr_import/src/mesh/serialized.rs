@@ -71,9 +71,7 @@ impl Stream<'_> {
         let positions = self.vec3s(vertices, double)?;
         let mut normals = if flags & HAS_NORMALS != 0 { self.vec3s(vertices, double)? } else { Vec::new() };
         let uvs = if flags & HAS_UVS != 0 { self.numbers::<2>(vertices, double)? } else { Vec::new() };
-        if flags & HAS_COLORS != 0 {
-            self.vec3s(vertices, double)?;
-        }
+        let vertex_colors = if flags & HAS_COLORS != 0 { self.vec3s(vertices, double)? } else { Vec::new() };
         if flags & FACE_NORMALS != 0 {
             normals.clear();
         }
@@ -86,7 +84,7 @@ impl Stream<'_> {
             indices.push(triangle);
         }
         let uvs = uvs.into_iter().map(|v| DVec2::from(v).as_vec2()).collect();
-        Ok(MeshDesc { name: String::new(), positions, normals, uvs, triangles: indices })
+        Ok(MeshDesc { positions, normals, uvs, triangles: indices, vertex_colors, ..MeshDesc::default() })
     }
 
     fn skip_name(&mut self) -> Result<(), String> {

@@ -165,5 +165,6 @@ fn read_mesh(dict: &Bound<'_, PyDict>) -> PyResult<Result<MeshDesc, String>> {
         normals: triples(normals),
         uvs: pairs,
         triangles,
+        ..MeshDesc::default()
     }))
 }

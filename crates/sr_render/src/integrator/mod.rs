@@ -21,6 +21,7 @@ use sr_scene::Rgb;
 
 use crate::light::Target;
 use crate::scene::Scene;
+use crate::texture::RayCone;
 use crate::vertex::Vertex;
 use sr_bsdf::{AnyBsdf, Bsdf};
 
@@ -58,6 +59,8 @@ pub struct CameraRays<Q> {
     pub pixel: [u32; BATCH],
     /// Indices of the samples in their sequences.
     pub index: [u32; BATCH],
+    /// How wide they all are.
+    pub cone: RayCone,
     /// Sequences.
     pub sequence: [Q; BATCH],
 }
@@ -66,7 +69,7 @@ impl<Q: Sequence> CameraRays<Q> {
     /// No rays; `sequence` may be any of the kind.
     pub fn none(sequence: Q) -> Self {
         let (pixel, index, sequence) = ([0; BATCH], [0; BATCH], [sequence; BATCH]);
-        Self { count: 0, rays: Rays::NONE, pixel, index, sequence }
+        Self { count: 0, rays: Rays::NONE, pixel, index, cone: RayCone::LINE, sequence }
     }
 
     /// The uniforms of one ray, from dimension 0 on.

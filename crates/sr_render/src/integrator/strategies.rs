@@ -25,6 +25,7 @@ use super::{
 use crate::light::SeenFrom;
 use crate::scene::Scene;
 use crate::strategy::{Basic, Density, MAX_TECHNIQUES, Strategy};
+use crate::texture::RayCone;
 use crate::vertex::{Sight, Vertex};
 
 /// Dimensions of one technique: lobe or light, direction (2), and one to spare.
@@ -165,7 +166,7 @@ impl Integrator for StrategyTracer {
         cancel: &AtomicBool,
     ) {
         for (i, sample) in samples[..rays.count].iter_mut().enumerate() {
-            *sample = self.li(scene, rays.rays.get(i), &mut rays.cursor(i), cancel);
+            *sample = self.li(scene, (rays.rays.get(i), rays.cone), &mut rays.cursor(i), cancel);
         }
     }
 }
@@ -174,7 +175,7 @@ impl StrategyTracer {
     fn li<Q: Sequence>(
         &self,
         scene: &Scene,
-        mut ray: Ray,
+        (mut ray, mut cone): (Ray, RayCone),
         u: &mut Cursor<'_, Q>,
         cancel: &AtomicBool,
     ) -> PathSample {
@@ -183,7 +184,7 @@ impl StrategyTracer {
         let mut eta = 1.0;
         let mut share = if self.limits.hide_emitters { Share::Nothing } else { Share::All };
         let mut depth = 0;
-        while let Some((le, arrival)) = self.arrive(scene, &ray, share, &mut path, beta, depth == 0) {
+        while let Some((le, arrival)) = self.arrive(scene, (&ray, cone), share, &mut path, beta, depth == 0) {
             let vertex = arrival.vertex();
             path.li += beta * le;
             depth += 1;
@@ -205,6 +206,7 @@ impl StrategyTracer {
             if beta == Rgb::ZERO {
                 break;
             }
+            cone = cone.after(ray.origin.distance(vertex.surface.p), step.delta);
             ray = vertex.surface.spawn_ray(step.wi);
             share = next_share;
         }
@@ -220,9 +222,10 @@ struct Arrival<'a> {
 }
 
 impl<'a> Arrival<'a> {
-    fn new(scene: &'a Scene, ray: &Ray, hit: &Hit) -> Self {
+    fn new(scene: &'a Scene, ray: &Ray, hit: &Hit, cone: RayCone) -> Self {
         let surface = scene.geometry.surface(ray, hit);
-        let (sight, bsdf) = Sight::with_model(scene, ray, hit, &surface);
+        let point = scene.texture_point(ray, hit, cone);
+        let (sight, bsdf) = Sight::with_model(scene, ray, hit, &surface, point);
         Self { surface, sight, bsdf }
     }
 
@@ -237,7 +240,7 @@ impl StrategyTracer {
     fn arrive<'a>(
         &self,
         scene: &'a Scene,
-        ray: &Ray,
+        (ray, cone): (&Ray, RayCone),
         share: Share,
         path: &mut PathSample,
         beta: Rgb,
@@ -247,7 +250,7 @@ impl StrategyTracer {
             path.li += beta * self.environment(scene, ray, share);
             return None;
         };
-        let arrival = Arrival::new(scene, ray, &hit);
+        let arrival = Arrival::new(scene, ray, &hit, cone);
         if is_first {
             path.first = Some(FirstHit::new(&arrival.vertex(), hit.t));
         }

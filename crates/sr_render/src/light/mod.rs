@@ -15,6 +15,7 @@
 mod area;
 mod batch;
 mod compile;
+mod cylinder;
 mod environment;
 mod list;
 mod point;

@@ -14,11 +14,10 @@ mod uncommon;
 
 use std::ops::Range;
 
-use glam::Vec2;
 use sr_bsdf::{AnyBsdf, AnyModel, Mask, RoughPlasticTables};
 use sr_scene::{ColorInput, MaterialId, Rgb, ScalarInput};
 
-use crate::texture::Textures;
+use crate::texture::{TexturePoint, Textures};
 pub use flatten::MaterialError;
 use kind::Kind;
 pub(crate) use kind::{COLORS, Inputs, Recipe, RecipeUser, SCALARS};
@@ -123,7 +122,7 @@ impl Materials {
         if !side.parts.is_empty() {
             return self.blend(side, place);
         }
-        let inputs = side.inputs(place.uv, place.textures);
+        let inputs = side.inputs(&place.at, place.textures);
         let model = self.with_recipe(side.kind, MakeAny { inputs });
         match inputs.opacity {
             1.0 => AnyBsdf::Solid(model),
@@ -147,26 +146,26 @@ impl<'a> RecipeUser<'a> for MakeAny {
 }
 
 impl Side {
-    /// The colours and numbers of the model at a surface coordinate. Those that it does not take are 0.
+    /// The colours and numbers of the model at a point. Those that it does not take are 0.
     #[inline(always)]
-    pub(crate) fn inputs(&self, uv: Vec2, textures: &Textures) -> Inputs {
-        if self.is_textured { self.sources.look_up(self.opacity, uv, textures) } else { self.constant }
+    pub(crate) fn inputs(&self, at: &TexturePoint, textures: &Textures) -> Inputs {
+        if self.is_textured { self.sources.look_up(self.opacity, at, textures) } else { self.constant }
     }
 
     /// The reflectance of a side of [`Queue::LAMBERT`].
     #[inline(always)]
-    pub(crate) fn reflectance(&self, uv: Vec2, textures: &Textures) -> Rgb {
-        textures.color(self.sources.colors[0], uv)
+    pub(crate) fn reflectance(&self, at: &TexturePoint, textures: &Textures) -> Rgb {
+        textures.color(self.sources.colors[0], *at)
     }
 }
 
 impl Sources {
     #[inline(never)]
-    fn look_up(&self, opacity: ScalarInput, uv: Vec2, textures: &Textures) -> Inputs {
+    fn look_up(&self, opacity: ScalarInput, at: &TexturePoint, textures: &Textures) -> Inputs {
         Inputs {
-            colors: self.colors.map(|color| textures.color(color, uv)),
-            scalars: self.scalars.map(|scalar| textures.scalar(scalar, uv)),
-            opacity: textures.scalar(opacity, uv),
+            colors: self.colors.map(|color| textures.color(color, *at)),
+            scalars: self.scalars.map(|scalar| textures.scalar(scalar, *at)),
+            opacity: textures.scalar(opacity, *at),
         }
     }
 }

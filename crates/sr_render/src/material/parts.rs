@@ -4,19 +4,20 @@
 
 use std::ops::Range;
 
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 use sr_bsdf::{AnyBsdf, AnyModel, Blend, Part, Step, Tilt};
 use sr_scene::{ColorInput, Rgb, ScalarInput, TextureId, Tilting};
 
 use super::uncommon::Uncommon;
 use super::{MakeAny, Materials, Side, Sources};
-use crate::texture::Textures;
+use crate::texture::{TexturePoint, Textures};
 
 /// Where a model is made: what its inputs and frames depend on.
 #[derive(Clone, Copy)]
 pub(crate) struct Place<'a> {
     pub textures: &'a Textures,
-    pub uv: Vec2,
+    /// Where the textures are looked up.
+    pub at: TexturePoint,
     /// Towards the viewer, in the surface's frame.
     pub wo: Vec3,
     /// ∂p/∂u and ∂p/∂v in that frame, if the side asks for them.
@@ -86,11 +87,11 @@ pub(super) struct Parts {
 
 impl Place<'_> {
     pub fn color(&self, input: ColorInput) -> Rgb {
-        self.textures.color(input, self.uv)
+        self.textures.color(input, self.at)
     }
 
     pub fn scalar(&self, input: ScalarInput) -> f32 {
-        self.textures.scalar(input, self.uv)
+        self.textures.scalar(input, self.at)
     }
 }
 
@@ -106,7 +107,7 @@ impl TiltSource {
     fn tilt(&self, place: &Place) -> Tilt {
         let normal = match self.normal {
             NormalSource::Bump { scale, texture } => {
-                let slope = scale * place.textures.gradient(texture, place.uv);
+                let slope = scale * place.textures.gradient(texture, place.at);
                 let [u, v] = place.tangents;
                 let normal = u.with_z(slope.x).cross(v.with_z(slope.y));
                 if normal.z < 0.0 { -normal } else { normal }
@@ -159,7 +160,7 @@ impl Materials {
     fn model(&self, source: &ModelSource, place: &Place) -> AnyModel<'_> {
         match source {
             ModelSource::Common { kind, sources } => {
-                let inputs = sources.look_up(ScalarInput::Constant(1.0), place.uv, place.textures);
+                let inputs = sources.look_up(ScalarInput::Constant(1.0), &place.at, place.textures);
                 self.with_recipe(*kind, MakeAny { inputs })
             }
             ModelSource::Uncommon(uncommon) => uncommon.model(place, &self.tables),

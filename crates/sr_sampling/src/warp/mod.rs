@@ -7,6 +7,7 @@
 mod cone;
 mod disk;
 mod hemisphere;
+mod polygon;
 mod rectangle;
 mod sphere;
 mod spherical_rectangle;
@@ -16,6 +17,7 @@ mod triangle;
 pub use cone::{ConeError, UniformCone};
 pub use disk::{UniformDisk, concentric_disk, invert_concentric_disk, unit_circle};
 pub use hemisphere::{AnyHemisphere, CosineHemisphere, UniformHemisphere};
+pub use polygon::RegularPolygon;
 pub use rectangle::{DegenerateRectangle, UniformRectangle};
 pub use sphere::UniformSphere;
 pub use spherical_rectangle::SphericalRectangle;

@@ -1,32 +1,21 @@
-//! The camera and its film.
+//! The camera.
 
 use super::Check;
-use crate::diagnostic::Diagnostic;
-use crate::{CameraDesc, FilterDesc};
+use crate::camera::Lens;
+use crate::diagnostic::Span;
+use crate::{CameraDesc, Projection};
 
-/// A film of more pixels than this is an error: its accumulators alone would not fit in memory.
-pub const MAX_FILM_PIXELS: u64 = 1 << 27;
+/// Apertures of more blades are disks.
+const MAX_BLADES: u32 = 1000;
 
 impl Check<'_> {
     pub(super) fn camera(&mut self, camera: &CameraDesc) {
         let span = &camera.span;
-        let film = &camera.film;
-        let pixels = u64::from(film.width) * u64::from(film.height);
-        if pixels == 0 || pixels > MAX_FILM_PIXELS {
-            let size = format!("a film of {} × {} pixels", film.width, film.height);
-            let limit = format!("at least 1 and at most {MAX_FILM_PIXELS} pixels are possible");
-            self.found.push(Diagnostic::error("scene::film-size", span, size).hint(limit));
-        }
-        if !(camera.fov > 0.0 && camera.fov < std::f32::consts::PI) {
-            let fov = camera.fov.to_degrees();
-            self.error(
-                "scene::field-of-view",
-                span,
-                format!("an angle of view of {fov}° is not between 0° and 180°"),
-            );
-        }
+        self.film(&camera.film, span);
         let m = camera.world_from_camera;
-        if !m.is_finite() || m.determinant() == 0.0 {
+        let columns = [m.x_axis, m.y_axis, m.z_axis].map(|column| column.truncate().normalize_or_zero());
+        let [x, y, z] = columns;
+        if !m.is_finite() || !(x.cross(y).dot(z).abs() > 1e-6) {
             self.error("scene::bad-transform", span, "the placement of the camera is not invertible");
         }
         if !(camera.near_clip > 0.0 && camera.far_clip > camera.near_clip) {
@@ -37,27 +26,35 @@ impl Check<'_> {
                 format!("clipping distances {near} and {far}: 0 < near < far is needed"),
             );
         }
-        if !(camera.aperture_radius >= 0.0 && camera.aperture_radius.is_finite()) {
-            self.error("scene::aperture", span, format!("an aperture radius of {}", camera.aperture_radius));
+        if let Projection::Perspective { fov, principal_point_offset, lens, .. } = &camera.projection {
+            if !(*fov > 0.0 && *fov < std::f32::consts::PI) {
+                let fov = fov.to_degrees();
+                let message = format!("an angle of view of {fov}° is not between 0° and 180°");
+                self.error("scene::field-of-view", span, message);
+            }
+            if !principal_point_offset.is_finite() {
+                self.error("scene::not-finite", span, "the principal point is not finite");
+            }
+            if let Some(lens) = lens {
+                self.lens(lens, span);
+            }
         }
-        if camera.aperture_radius > 0.0 && !(camera.focus_distance > 0.0 && camera.focus_distance.is_finite())
-        {
-            self.error("scene::focus", span, format!("a focus distance of {}", camera.focus_distance));
+    }
+
+    fn lens(&mut self, lens: &Lens, span: &Span) {
+        let Lens { aperture_radius, focus_distance, blades, blade_rotation } = *lens;
+        if !(aperture_radius >= 0.0 && aperture_radius.is_finite()) {
+            self.error("scene::aperture", span, format!("an aperture radius of {aperture_radius}"));
         }
-        if !camera.principal_point_offset.is_finite() {
-            self.error("scene::not-finite", span, "the principal point is not finite");
+        if aperture_radius > 0.0 && !(focus_distance > 0.0 && focus_distance.is_finite()) {
+            self.error("scene::focus", span, format!("a focus distance of {focus_distance}"));
         }
-        let radius = match film.filter {
-            FilterDesc::Box { radius } | FilterDesc::Tent { radius } => radius,
-            FilterDesc::Gaussian { stddev, radius } if stddev > 0.0 => radius,
-            FilterDesc::Gaussian { .. } => f32::NAN,
-        };
-        if !(radius > 0.0 && radius <= 32.0) {
-            self.error(
-                "scene::filter",
-                span,
-                format!("a pixel filter of radius {radius}: (0, 32] is possible"),
-            );
+        if !(blades == 0 || (3..=MAX_BLADES).contains(&blades)) {
+            let message = format!("an aperture of {blades} blades: 0 (a disk), or 3 to {MAX_BLADES}");
+            self.error("scene::aperture", span, message);
+        }
+        if !blade_rotation.is_finite() {
+            self.error("scene::not-finite", span, "the rotation of the aperture is not finite");
         }
     }
 }

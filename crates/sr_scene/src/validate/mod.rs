@@ -4,23 +4,23 @@
 //! without further checks: ids are in range, materials form a tree, every number is finite.
 
 mod camera;
+mod film;
 mod light;
 mod material;
 mod principled;
 mod shape;
+mod texture;
 
 use crate::diagnostic::{Diagnostic, Span};
-use crate::{ColorInput, MaterialId, Rgb, SceneDesc, TextureDesc, TextureId};
+use crate::{ColorInput, MaterialId, Rgb, SceneDesc, TextureId};
 
-pub use camera::MAX_FILM_PIXELS;
+pub use film::MAX_FILM_PIXELS;
 
 /// Checks a whole description. `span_of` says where a material was described.
 pub fn validate(scene: &SceneDesc, span_of: impl Fn(MaterialId) -> Span) -> Vec<Diagnostic> {
     let mut check = Check { scene, found: Vec::new() };
     check.camera(&scene.camera);
-    for texture in &scene.textures {
-        check.texture(texture);
-    }
+    check.textures();
     for index in 0..scene.materials.len() {
         let id = MaterialId(index as u32);
         let span = span_of(id);
@@ -66,25 +66,6 @@ struct Check<'a> {
 impl Check<'_> {
     fn error(&mut self, code: &'static str, span: &Span, message: impl Into<String>) {
         self.found.push(Diagnostic::error(code, span, message));
-    }
-
-    fn texture(&mut self, texture: &TextureDesc) {
-        let (to_uv, span) = match texture {
-            TextureDesc::Bitmap { image, to_uv, span, .. } => {
-                if *image as usize >= self.scene.images.len() {
-                    self.error("scene::bad-id", span, format!("there is no image {image}"));
-                }
-                (to_uv, span)
-            }
-            TextureDesc::Checkerboard { color0, color1, to_uv, span } => {
-                self.color(*color0, "color0", span);
-                self.color(*color1, "color1", span);
-                (to_uv, span)
-            }
-        };
-        if !to_uv.is_finite() {
-            self.error("scene::bad-transform", span, "the transform of texture coordinates is not finite");
-        }
     }
 
     fn texture_id(&mut self, id: TextureId, span: &Span) {

@@ -11,6 +11,13 @@ impl Check<'_> {
         }
         if let Some(Emission { radiance }) = &shape.emission {
             self.color_input(radiance, "radiance", span);
+            if self.has_mesh_color(radiance) {
+                self.error(
+                    "scene::emitting-mesh-color",
+                    span,
+                    "the colors of a mesh cannot be those of a light",
+                );
+            }
         }
         match &shape.geometry {
             Geometry::Sphere { center, radius, frame, .. } => {
@@ -24,10 +31,30 @@ impl Check<'_> {
                     self.error("scene::disk", span, "a disk without area");
                 }
             }
+            Geometry::Cylinder { base, frame, radius, length, .. } => {
+                let is_finite = base.is_finite() && frame.is_finite() && (radius + length).is_finite();
+                if !(*radius > 0.0 && *length > 0.0 && is_finite) {
+                    let message = format!("a cylinder of radius {radius} and length {length}");
+                    self.error("scene::cylinder", span, message);
+                }
+            }
+            Geometry::Patch { corners, .. } => {
+                let [p00, p10, p01, p11] = corners.map(|p| p.as_dvec3());
+                let area = (p11 - p00).cross(p01 - p10).length() + (p10 - p00).cross(p01 - p00).length();
+                if !(area > 0.0 && corners.iter().all(|p| p.is_finite())) {
+                    self.error("scene::patch", span, "a bilinear patch without area");
+                }
+                if shape.emission.is_some() {
+                    self.error("scene::emitting-patch", span, "a bilinear patch cannot emit");
+                }
+            }
             Geometry::Mesh(mesh) => {
                 let n = mesh.positions.len();
-                if (!mesh.normals.is_empty() && mesh.normals.len() != n)
-                    || (!mesh.uvs.is_empty() && mesh.uvs.len() != n)
+                let fits = |len: usize, count: usize| len == 0 || len == count;
+                if !(fits(mesh.normals.len(), n)
+                    && fits(mesh.uvs.len(), n)
+                    && fits(mesh.vertex_colors.len(), n)
+                    && fits(mesh.face_colors.len(), mesh.triangles.len()))
                 {
                     self.error(
                         "scene::mesh-arrays",

@@ -8,7 +8,7 @@ use glam::{Vec2, Vec3};
 use ply_rs_bw::ply::{ElementDef, PropertyType, ScalarType};
 use sr_scene::MeshDesc;
 
-use super::{Columns, NO_INDICES, fan, index_list};
+use super::{Columns, Fans, NO_INDICES, color_slot, has_colors, index_list};
 
 /// Bytes that are still to be read.
 pub struct Data<'a> {
@@ -37,6 +37,9 @@ impl<'a> Data<'a> {
             let mut v = [0.0; Columns::SLOTS];
             for &(kind, slot) in &properties {
                 match (kind, slot) {
+                    (PropertyType::Scalar(kind), Some(slot)) if slot >= Columns::FIRST_COLOR => {
+                        v[slot] = self.color_part(kind)?;
+                    }
                     (PropertyType::Scalar(kind), Some(slot)) => v[slot] = self.number(kind)? as f32,
                     _ => self.skip(kind)?,
                 }
@@ -48,20 +51,34 @@ impl<'a> Data<'a> {
             if columns.uvs {
                 mesh.uvs.push(Vec2::new(v[6], v[7]));
             }
+            if columns.colors {
+                mesh.vertex_colors.push(Vec3::new(v[8], v[9], v[10]));
+            }
         }
         Ok(())
     }
 
     /// Reads faces into triangles.
-    pub fn faces(&mut self, element: &ElementDef, mesh: &mut MeshDesc) -> Result<(), String> {
+    pub fn faces(
+        &mut self,
+        element: &ElementDef,
+        mesh: &mut MeshDesc,
+        fans: &mut Fans,
+    ) -> Result<(), String> {
         let Some((indices, _)) = index_list(element) else {
             return if element.count > 0 { Err(NO_INDICES.into()) } else { Ok(()) };
         };
         mesh.triangles.reserve(element.count);
         let mut corners = Vec::new();
+        let has_colors = has_colors(element);
         for number in 0..element.count {
+            let mut color = [0.0; 3];
             for (name, property) in &element.properties {
                 match &property.data_type {
+                    PropertyType::Scalar(kind) if has_colors && color_slot(name).is_some() => {
+                        let part = self.color_part(kind)?;
+                        color_slot(name).into_iter().for_each(|slot| color[slot] = part);
+                    }
                     PropertyType::List(length, item) if name == indices => {
                         corners.clear();
                         for _ in 0..self.length(length)? {
@@ -72,10 +89,13 @@ impl<'a> Data<'a> {
                             }
                             corners.push(index as u32);
                         }
-                        fan(&corners, &mut mesh.triangles);
+                        fans.add(&corners, &mut mesh.triangles);
                     }
                     other => self.skip(other)?,
                 }
+            }
+            if has_colors {
+                mesh.face_colors.resize(mesh.triangles.len(), Vec3::from(color));
             }
         }
         Ok(())
@@ -131,6 +151,16 @@ impl<'a> Data<'a> {
             ScalarType::Float => read!(f32),
             ScalarType::Double => read!(f64),
         })
+    }
+
+    /// A part of a color in [0, 1]: whole numbers count to the largest of their kind.
+    fn color_part(&mut self, kind: &ScalarType) -> Result<f32, String> {
+        let most = match kind {
+            ScalarType::UChar => 255.0,
+            ScalarType::UShort => 65535.0,
+            _ => 1.0,
+        };
+        Ok((self.number(kind)? / most) as f32)
     }
 
     #[inline]
@@ -190,7 +220,7 @@ mod tests {
 
     #[test]
     fn what_nobody_asks_for_is_passed_over() {
-        let mesh = parse(&crowded()).unwrap();
+        let mesh = parse(&crowded(), &mut Fans::default()).unwrap();
         assert_eq!(mesh.positions[0], Vec3::new(0.5, 1.5, -2.0));
         assert_eq!(mesh.positions[2], Vec3::new(6.0, 7.0, 9.0));
         assert_eq!(mesh.triangles, [[2, 1, 0]]);
@@ -201,7 +231,7 @@ mod tests {
     fn every_truncation_is_an_error() {
         let whole = crowded();
         for cut in 0..whole.len() {
-            assert!(parse(&whole[..cut]).is_err(), "cut at {cut}");
+            assert!(parse(&whole[..cut], &mut Fans::default()).is_err(), "cut at {cut}");
         }
     }
 
@@ -216,10 +246,11 @@ mod tests {
             bytes.extend(data);
             bytes
         };
-        let negative = parse(&file("uchar", "int", &[1, 255, 255, 255, 255])).unwrap_err();
+        let negative =
+            parse(&file("uchar", "int", &[1, 255, 255, 255, 255]), &mut Fans::default()).unwrap_err();
         assert!(negative.contains("face 0 uses the vertex -1"), "{negative}");
-        assert!(parse(&file("uchar", "float", &[1, 0x3f, 0, 0, 0])).is_err());
-        assert!(parse(&file("char", "uchar", &[255, 0, 0])).is_err());
-        assert!(parse(&file("uint", "uchar", &[255, 255, 255, 255, 0])).is_err());
+        assert!(parse(&file("uchar", "float", &[1, 0x3f, 0, 0, 0]), &mut Fans::default()).is_err());
+        assert!(parse(&file("char", "uchar", &[255, 0, 0]), &mut Fans::default()).is_err());
+        assert!(parse(&file("uint", "uchar", &[255, 255, 255, 255, 0]), &mut Fans::default()).is_err());
     }
 }

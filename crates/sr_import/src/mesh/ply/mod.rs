@@ -11,10 +11,10 @@ use ply_rs_bw::ply::{
 };
 use sr_scene::MeshDesc;
 
-use super::{MAX_ELEMENTS, fan};
+use super::{Fans, MAX_ELEMENTS};
 
 /// Parses a file.
-pub fn parse(bytes: &[u8]) -> Result<MeshDesc, String> {
+pub fn parse(bytes: &[u8], fans: &mut Fans) -> Result<MeshDesc, String> {
     let mut reader = Reader::new(Cursor::new(bytes));
     let header = Parser::<Ignored>::new().read_header(&mut reader).map_err(|e| one_line(&e))?;
     let mut mesh = MeshDesc::default();
@@ -33,8 +33,8 @@ pub fn parse(bytes: &[u8]) -> Result<MeshDesc, String> {
         match (name.as_str(), &mut data) {
             ("vertex", Some(data)) => data.vertices(element, &mut mesh)?,
             ("vertex", None) => vertices(&mut reader, element, &header, &mut mesh)?,
-            ("face", Some(data)) => data.faces(element, &mut mesh)?,
-            ("face", None) => faces(&mut reader, element, &header, &mut mesh)?,
+            ("face", Some(data)) => data.faces(element, &mut mesh, fans)?,
+            ("face", None) => faces(&mut reader, element, &header, &mut mesh, fans)?,
             (_, Some(data)) => data.skip_element(element)?,
             (_, None) => {
                 read::<Ignored>(&mut reader, element, &header)?;
@@ -70,6 +70,9 @@ fn vertices(
     if columns.uvs {
         mesh.uvs = vertices.iter().map(|Vertex(v)| Vec2::new(v[6], v[7])).collect();
     }
+    if columns.colors {
+        mesh.vertex_colors = vertices.iter().map(|Vertex(v)| Vec3::new(v[8], v[9], v[10])).collect();
+    }
     Ok(())
 }
 
@@ -78,6 +81,7 @@ fn faces(
     element: &ElementDef,
     header: &Header,
     mesh: &mut MeshDesc,
+    fans: &mut Fans,
 ) -> Result<(), String> {
     if element.count > 0 && index_list(element).is_none() {
         return Err(NO_INDICES.into());
@@ -87,7 +91,10 @@ fn faces(
         if let Some(bad) = face.bad {
             return Err(format!("face {number} uses the vertex {bad}"));
         }
-        fan(&face.indices, &mut mesh.triangles);
+        fans.add(&face.indices, &mut mesh.triangles);
+        if has_colors(element) {
+            mesh.face_colors.resize(mesh.triangles.len(), Vec3::from(face.color));
+        }
     }
     Ok(())
 }
@@ -111,11 +118,13 @@ struct Columns {
     positions: bool,
     normals: bool,
     uvs: bool,
+    colors: bool,
 }
 
 impl Columns {
-    /// Position, normal, texture coordinates, one after another.
-    const SLOTS: usize = 8;
+    /// Position, normal, texture coordinates, color, one after another.
+    const SLOTS: usize = 11;
+    const FIRST_COLOR: usize = 8;
 
     fn of(element: &ElementDef) -> Self {
         let has = |name: &str| element.properties.contains_key(name);
@@ -124,6 +133,7 @@ impl Columns {
             positions: has("x") && has("y") && has("z"),
             normals: has("nx") && has("ny") && has("nz"),
             uvs: pairs.iter().any(|(u, v)| has(u) && has(v)),
+            colors: has_colors(element),
         }
     }
 
@@ -138,9 +148,35 @@ impl Columns {
             "nz" => 5,
             "u" | "s" | "texture_u" | "texture_s" => 6,
             "v" | "t" | "texture_v" | "texture_t" => 7,
-            _ => return None,
+            _ => return color_slot(name).map(|slot| Self::FIRST_COLOR + slot),
         })
     }
+}
+
+fn has_colors(element: &ElementDef) -> bool {
+    let has = |name: &str| element.properties.contains_key(name);
+    (has("r") && has("g") && has("b")) || (has("red") && has("green") && has("blue"))
+}
+
+/// Which part of a color a property is.
+fn color_slot(name: &str) -> Option<usize> {
+    Some(match name {
+        "r" | "red" => 0,
+        "g" | "green" => 1,
+        "b" | "blue" => 2,
+        _ => return None,
+    })
+}
+
+/// A part of a color as a number in [0, 1]: whole numbers count to the largest of their kind.
+fn color_part(value: &Property) -> Option<f32> {
+    Some(match *value {
+        Property::Float(v) => v,
+        Property::Double(v) => v as f32,
+        Property::UChar(v) => f32::from(v) / 255.0,
+        Property::UShort(v) => f32::from(v) / 65535.0,
+        _ => return None,
+    })
 }
 
 /// A vertex of a text file, by [`Columns::slot`].
@@ -159,6 +195,10 @@ impl PropertyAccess for Vertex {
     }
 
     fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
+        if let (Some(slot), Some(part)) = (color_slot(name), color_part(&value)) {
+            self.0[Columns::FIRST_COLOR + slot] = part;
+            return PropertyAccessResult::Set;
+        }
         match value {
             Property::Double(v) => self.set_float(name, v as f32),
             Property::Char(v) => self.set_float(name, v.into()),
@@ -175,6 +215,7 @@ impl PropertyAccess for Vertex {
 #[derive(Default)]
 struct Face {
     indices: Vec<u32>,
+    color: [f32; 3],
     bad: Option<i64>,
 }
 
@@ -197,6 +238,10 @@ impl PropertyAccess for Face {
     }
 
     fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
+        if let (Some(slot), Some(part)) = (color_slot(name), color_part(&value)) {
+            self.color[slot] = part;
+            return PropertyAccessResult::Set;
+        }
         if name != "vertex_indices" && name != "vertex_index" {
             return PropertyAccessResult::Ignored;
         }
@@ -250,20 +295,20 @@ mod tests {
     fn text_and_both_byte_orders_give_the_same_mesh() {
         let mut ascii = header("ascii", "x y z u v");
         ascii.extend(b"0 0 0.5 0 0\n1 0 0.5 1 0\n1 1 0.5 1 1\n0 1 5e-1 0 1\n4 0 1 2 3\n");
-        let mesh = parse(&ascii).unwrap();
+        let mesh = parse(&ascii, &mut Fans::default()).unwrap();
         assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
         assert_eq!(mesh.positions[2], Vec3::new(1.0, 1.0, 0.5));
         assert_eq!(mesh.uvs[3], Vec2::new(0.0, 1.0));
         assert!(mesh.normals.is_empty());
-        assert_eq!(parse(&binary(false)).unwrap(), mesh);
-        assert_eq!(parse(&binary(true)).unwrap(), mesh);
+        assert_eq!(parse(&binary(false), &mut Fans::default()).unwrap(), mesh);
+        assert_eq!(parse(&binary(true), &mut Fans::default()).unwrap(), mesh);
     }
 
     #[test]
     fn every_truncation_is_an_error() {
         let whole = binary(false);
         for cut in 0..whole.len() {
-            assert!(parse(&whole[..cut]).is_err(), "cut at {cut}");
+            assert!(parse(&whole[..cut], &mut Fans::default()).is_err(), "cut at {cut}");
         }
     }
 
@@ -274,7 +319,30 @@ mod tests {
                 "ply\nformat ascii 1.0\nelement junk {count}\nelement vertex 0\nproperty float x\n\
                  property float y\nproperty float z\nend_header\n"
             );
-            assert!(parse(text.as_bytes()).is_err());
+            assert!(parse(text.as_bytes(), &mut Fans::default()).is_err());
         }
+    }
+
+    #[test]
+    fn colors_of_vertices_and_faces() {
+        let text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+                    property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 1\n\
+                    property list uchar int vertex_indices\nproperty float r\nproperty float g\nproperty float b\n\
+                    end_header\n0 0 0 255 0 51\n1 0 0 0 255 0\n0 1 0 0 0 255\n3 0 1 2 0.5 0.25 2\n";
+        let mesh = parse(text.as_bytes(), &mut Fans::default()).unwrap();
+        assert_eq!(mesh.vertex_colors[0], Vec3::new(1.0, 0.0, 0.2));
+        assert_eq!(mesh.face_colors, [Vec3::new(0.5, 0.25, 2.0)]);
+        let header = text.split_inclusive("end_header\n").next().unwrap();
+        let mut bytes = header.replace("ascii", "binary_little_endian").into_bytes();
+        for (place, color) in
+            [([0.0f32, 0.0], [255u8, 0, 51]), ([1.0, 0.0], [0, 255, 0]), ([0.0, 1.0], [0, 0, 255])]
+        {
+            [place[0], place[1], 0.0].iter().for_each(|v| bytes.extend(v.to_le_bytes()));
+            bytes.extend(color);
+        }
+        bytes.push(3);
+        (0..3i32).for_each(|i| bytes.extend(i.to_le_bytes()));
+        [0.5f32, 0.25, 2.0].iter().for_each(|v| bytes.extend(v.to_le_bytes()));
+        assert_eq!(parse(&bytes, &mut Fans::default()).unwrap(), mesh);
     }
 }

@@ -101,7 +101,7 @@ pub(super) fn find_models<Q: Sequence>(scene: &Scene, paths: &Paths<Q>, at: &mut
     for k in 0..pictures.len().min(BATCH) {
         let i = pictures.get(k);
         let side = scene.materials.side(at.queues.side(i));
-        let uv = scene.geometry.uv(&paths.rays.get(i), &at.hits.at(i));
-        at.albedo.set(i, side.reflectance(uv, &scene.textures));
+        let point = scene.texture_point(&paths.rays.get(i), &at.hits.at(i), paths.cone(i));
+        at.albedo.set(i, side.reflectance(&point, &scene.textures));
     }
 }

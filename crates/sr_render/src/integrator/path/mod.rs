@@ -117,6 +117,9 @@ impl Integrator for PathTracer {
                 break;
             }
             direct::connect(scene, paths, at, samples);
+            if scene.textures.has_mipmaps() {
+                paths.widen(&at.hits.t, &at.scattered.pdf);
+            }
             go_on::go_on(&step, paths, at, samples);
             depth += 1;
         }
@@ -131,7 +134,7 @@ mod tests {
     use sr_testing::known_scenes;
 
     use super::*;
-    use crate::camera::Camera;
+    use crate::camera::{Camera, Project};
     use crate::render::RenderSettings;
 
     fn camera_rays(scene: &Scene, count: usize) -> CameraRays<Independent> {

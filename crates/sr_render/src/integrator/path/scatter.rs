@@ -89,11 +89,11 @@ fn serve<Q: Sequence>(
     for k in 0..bin.count {
         let i = queues.get(first + k);
         let side = scene.materials.side(queues.side(i));
-        let mut uv = Vec2::ZERO;
+        let mut point = Vec2::ZERO.into();
         if side.is_textured {
-            uv = scene.geometry.uv(&paths.rays.get(i), &at.hits.at(i));
+            point = scene.texture_point(&paths.rays.get(i), &at.hits.at(i), paths.cone(i));
         }
-        bin.set_inputs(k, &side.inputs(uv, &scene.textures));
+        bin.set_inputs(k, &side.inputs(&point, &scene.textures));
         bin.normal.set(k, at.normal.get(i));
         bin.wo.set(k, -paths.rays.direction.get(i));
         bin.light.set(k, at.lights.wi.get(i));
@@ -130,7 +130,8 @@ fn visit<Q: Sequence>(
 ) {
     let (hit, ray) = (at.hits.at(i), paths.rays.get(i));
     let surface = at.surfaces.get(i, scene.geometry.uv(&ray, &hit));
-    let (sight, bsdf) = Sight::with_model(scene, &ray, &hit, &surface);
+    let point = scene.texture_point(&ray, &hit, paths.cone(i));
+    let (sight, bsdf) = Sight::with_model(scene, &ray, &hit, &surface, point);
     let vertex = Vertex { surface: &surface, sight: &sight, bsdf: &bsdf };
     if step.first {
         samples[paths.slot[i] as usize % BATCH].first = Some(FirstHit::new(&vertex, hit.t));

@@ -10,6 +10,7 @@ use super::super::CameraRays;
 use super::bin::Bin;
 use super::queues::Queues;
 use crate::light::{DeltaSamples, LightSamples};
+use crate::texture::RayCone;
 
 /// Paths on their way. They lie close together; one that ends makes room for the last one.
 pub(super) struct Paths<Q> {
@@ -26,6 +27,10 @@ pub(super) struct Paths<Q> {
     /// The densities, in sr⁻¹, with which the rays were drawn; infinite where nothing else could have found what they
     /// hit: from the camera, and along delta lobes.
     pub pdf: [f32; BATCH],
+    /// Widths of the rays where they start: [`RayCone::width`].
+    width: [f32; BATCH],
+    /// [`RayCone::spread`].
+    spread: f32,
     /// Which of the batch's samples each is.
     pub slot: [u32; BATCH],
     pixel: [u32; BATCH],
@@ -43,6 +48,8 @@ impl<Q: Sequence> Paths<Q> {
             eta: [1.0; BATCH],
             from: Vec3s::splat(Vec3::ZERO),
             pdf: [f32::INFINITY; BATCH],
+            width: [0.0; BATCH],
+            spread: 0.0,
             slot: [0; BATCH],
             pixel: [0; BATCH],
             index: [0; BATCH],
@@ -54,12 +61,27 @@ impl<Q: Sequence> Paths<Q> {
     #[inline(always)]
     pub fn start(&mut self, camera: &CameraRays<Q>) {
         self.count = camera.count;
+        self.spread = camera.cone.spread;
         for i in 0..camera.count.min(BATCH) {
             self.rays.set(i, &camera.rays.get(i));
             self.beta.set(i, Rgb::ONE);
-            (self.eta[i], self.pdf[i]) = (1.0, f32::INFINITY);
+            (self.eta[i], self.pdf[i], self.width[i]) = (1.0, f32::INFINITY, camera.cone.width);
             (self.slot[i], self.pixel[i], self.index[i]) = (i as u32, camera.pixel[i], camera.index[i]);
             self.sequence[i] = camera.sequence[i];
+        }
+    }
+
+    /// How wide a ray is.
+    #[inline(always)]
+    pub fn cone(&self, i: usize) -> RayCone {
+        RayCone { width: self.width[i], spread: self.spread }
+    }
+
+    /// How wide the rays are that go on from `distances`; `pdf` is infinite for those along delta lobes.
+    #[inline(always)]
+    pub fn widen(&mut self, distances: &[f32; BATCH], pdf: &[f32; BATCH]) {
+        for i in 0..self.count.min(BATCH) {
+            self.width[i] = self.cone(i).after(distances[i], pdf[i] == f32::INFINITY).width;
         }
     }
 
@@ -94,7 +116,7 @@ impl<Q: Sequence> Paths<Q> {
         self.rays.set(i, &self.rays.get(last));
         self.beta.set(i, self.beta.get(last));
         self.from.set(i, self.from.get(last));
-        (self.eta[i], self.pdf[i]) = (self.eta[last], self.pdf[last]);
+        (self.eta[i], self.pdf[i], self.width[i]) = (self.eta[last], self.pdf[last], self.width[last]);
         (self.slot[i], self.pixel[i], self.index[i]) = (self.slot[last], self.pixel[last], self.index[last]);
         self.sequence[i] = self.sequence[last];
     }

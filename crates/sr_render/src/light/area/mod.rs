@@ -1,6 +1,6 @@
-//! Shapes that shine: diffuse emission from the front of a mesh, a sphere or a disk.
+//! Shapes that shine: diffuse emission from the front of a mesh, a sphere, a disk or a cylinder.
 //!
-//! A sphere is sampled by the cone it fills, triangles and rectangles nearby by solid angle (`near`), all others by area:
+//! A sphere is sampled by the cone it fills, a cylinder by the angle across its axis, triangles and rectangles nearby by solid angle (`near`), all others by area:
 //! evenly, or where a picture on them is bright (`picture`).
 
 mod flat;
@@ -11,11 +11,12 @@ pub(super) mod sphere;
 use std::f32::consts::PI;
 
 use glam::{Vec2, Vec3};
+use sr_geometry::Cylinder;
 use sr_sampling::warp::concentric_disk;
 use sr_sampling::{AliasTable, Distribution, Plane, Sample, to_solid_angle};
 use sr_scene::{ColorInput, Rgb};
 
-use super::{LightId, LightSample, Target};
+use super::{LightId, LightSample, Target, cylinder};
 use crate::texture::Textures;
 use flat::Parallelogram;
 pub(crate) use flat::Triangle;
@@ -37,6 +38,7 @@ enum Form {
     Parallelogram { shape: Parallelogram, picture: Option<Box<Picture>> },
     Sphere { center: Vec3, radius: f32, frame: glam::Mat3, inwards: bool },
     Disk { center: Vec3, u_axis: Vec3, v_axis: Vec3, normal: Vec3 },
+    Cylinder(Cylinder),
 }
 
 /// A piece of a light that can be sampled without a branch.
@@ -109,6 +111,12 @@ impl AreaLight {
         Self::new(form, radiance, area, textures.average(radiance))
     }
 
+    /// The side of a cylinder.
+    pub(crate) fn cylinder(cylinder: Cylinder, radiance: ColorInput, textures: &Textures) -> Self {
+        let area = 2.0 * PI * cylinder.radius * cylinder.length;
+        Self::new(Form::Cylinder(cylinder), radiance, area, textures.average(radiance))
+    }
+
     fn new(form: Form, radiance: ColorInput, area: f32, mean_radiance: Rgb) -> Self {
         Self { form, radiance, mean_radiance, area }
     }
@@ -148,7 +156,7 @@ impl AreaLight {
             &Form::Sphere { center, radius, inwards: false, .. } => {
                 return Some(Piece::Ball { center, radius });
             }
-            Form::Sphere { .. } | Form::Disk { .. } => return None,
+            Form::Sphere { .. } | Form::Disk { .. } | Form::Cylinder(_) => return None,
         };
         (!reach.holds(from, patch.normal)).then(|| Piece::Patch(patch, 1.0 / self.area))
     }
@@ -172,6 +180,7 @@ impl AreaLight {
                 let patch = Patch { corner: *center, edges, normal: *normal, is_triangle: false };
                 (patch.seen(d, 1.0 / self.area, from), disk_uv(d))
             }
+            Form::Cylinder(c) => cylinder::sample(c, from, u),
             Form::Sphere { center, radius, inwards: true, .. } => {
                 (sphere::sample_area(*center, *radius, from, u), Vec2::ZERO)
             }
@@ -249,6 +258,7 @@ impl AreaLight {
                 }
                 1.0 / self.area
             }
+            Form::Cylinder(c) => return cylinder::pdf(c, from, p),
             Form::Disk { .. } | Form::Sphere { .. } => 1.0 / self.area,
         };
         to_solid_angle(pdf_area, distance_squared, cos_light)

@@ -1,0 +1,115 @@
+//! Films and pixel filters.
+
+use sr_scene::{Crop, Diagnostic, FilmDesc, FilterDesc, MAX_FILM_PIXELS};
+
+use super::Lowering;
+use crate::node::Node;
+use crate::props::Props;
+
+const FILTERS: &[&str] = &["box", "tent", "gaussian", "mitchell", "catmullrom", "lanczos", "blackmanharris"];
+/// Mitsuba's default filter, cut at four standard deviations.
+const DEFAULT_FILTER: FilterDesc = FilterDesc::Gaussian { stddev: 0.5, radius: 2.0 };
+
+/// Mitsuba's default film.
+pub(super) fn default_film() -> FilmDesc {
+    FilmDesc { width: 768, height: 576, crop: None, filter: DEFAULT_FILTER, sample_border: false }
+}
+
+impl<'a> Lowering<'a, '_> {
+    pub(super) fn film(&mut self, props: &mut Props<'a>) -> FilmDesc {
+        let mut film = default_film();
+        let [node, ..] = self.nested(props, "film")[..] else { return film };
+        let mut props = Props::new(node);
+        if !matches!(node.kind.as_str(), "hdrfilm" | "ldrfilm") {
+            self.unknown_plugin(node, &["hdrfilm"], "its size and filter are used, the rest is ignored");
+        }
+        film.width = self.count(&mut props, node, "width", film.width);
+        film.height = self.count(&mut props, node, "height", film.height);
+        film.sample_border = props
+            .boolean("sample_border", self.d)
+            .or(props.boolean("high_quality_edges", self.d))
+            .unwrap_or(false);
+        film.crop = self.crop(&mut props, node, &film);
+        props.unsupported(&["size"], "the whole film is rendered", self.d);
+        // How a file is written is decided when it is written.
+        props.ignore(&[
+            "banner",
+            "pixel_format",
+            "component_format",
+            "file_format",
+            "compensate",
+            "attach_log",
+            "gamma",
+            "exposure",
+            "tonemap_method",
+            "key",
+            "burn",
+        ]);
+        if let [filter, ..] = self.nested(&mut props, "rfilter")[..] {
+            film.filter = self.filter(filter);
+        }
+        if !matches!(node.kind.as_str(), "hdrfilm" | "ldrfilm") {
+            props.use_all();
+        }
+        props.finish(self.d);
+        film
+    }
+
+    fn crop(&mut self, props: &mut Props<'a>, node: &Node, film: &FilmDesc) -> Option<Crop> {
+        let is_given = ["crop_width", "crop_height", "crop_offset_x", "crop_offset_y"];
+        let is_given = is_given.into_iter().any(|name| props.has(name));
+        let x = self.count(props, node, "crop_offset_x", 0);
+        let y = self.count(props, node, "crop_offset_y", 0);
+        let width = self.count(props, node, "crop_width", film.width.saturating_sub(x));
+        let height = self.count(props, node, "crop_height", film.height.saturating_sub(y));
+        is_given.then_some(Crop { x, y, width, height })
+    }
+
+    /// A number of something, at least 0.
+    pub(super) fn count(
+        &mut self,
+        props: &mut Props<'a>,
+        node: &Node,
+        name: &'static str,
+        default: u32,
+    ) -> u32 {
+        let Some(count) = props.integer(name, self.d) else { return default };
+        u32::try_from(count).unwrap_or_else(|_| {
+            let (code, limit) = match node.class.as_str() {
+                "film" => ("scene::film-size", MAX_FILM_PIXELS),
+                _ => ("mitsuba::bad-value", u32::MAX.into()),
+            };
+            let message = format!("\"{name}\" is {count}; 0 to {limit} is possible");
+            self.d.push(Diagnostic::error(code, &node.span, message));
+            default
+        })
+    }
+
+    fn filter(&mut self, node: &'a Node) -> FilterDesc {
+        let mut props = Props::new(node);
+        let filter = match node.kind.as_str() {
+            "box" => FilterDesc::Box { radius: props.float("radius", self.d).unwrap_or(0.5) },
+            "tent" => FilterDesc::Tent { radius: props.float("radius", self.d).unwrap_or(1.0) },
+            "gaussian" => {
+                let stddev = props.float("stddev", self.d).unwrap_or(0.5);
+                FilterDesc::Gaussian { stddev, radius: 4.0 * stddev }
+            }
+            "mitchell" => FilterDesc::Mitchell {
+                b: props.float("b", self.d).unwrap_or(1.0 / 3.0),
+                c: props.float("c", self.d).unwrap_or(1.0 / 3.0),
+            },
+            "catmullrom" => FilterDesc::CatmullRom,
+            "lanczos" => FilterDesc::Lanczos { lobes: self.count(&mut props, node, "lobes", 3) },
+            "blackmanharris" => {
+                FilterDesc::BlackmanHarris { radius: props.float("radius", self.d).unwrap_or(1.5) }
+            }
+            _ => {
+                self.unknown_plugin(node, FILTERS, "a Gaussian of standard deviation 0.5 pixels is used");
+                props.use_all();
+                DEFAULT_FILTER
+            }
+        };
+        props.finish(self.d);
+        filter
+    }
+}

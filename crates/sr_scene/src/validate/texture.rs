@@ -1,0 +1,119 @@
+//! Textures: ids, colours, transforms, and how they are nested.
+
+use super::Check;
+use crate::diagnostic::Span;
+use crate::{ColorInput, ScalarInput, TextureDesc, TextureId};
+
+/// Textures that one lookup may lead to.
+const MAX_LOOKUPS: u32 = 256;
+
+impl Check<'_> {
+    pub(super) fn textures(&mut self) {
+        // what a lookup costs, in lookups
+        let mut costs: Vec<u32> = Vec::new();
+        for texture in &self.scene.textures {
+            let (span, inner) = self.texture(texture);
+            let mut cost: u32 = 1;
+            for TextureId(id) in inner {
+                match costs.get(id as usize) {
+                    Some(inner) => cost = cost.saturating_add(*inner),
+                    // Ids lead back: nothing contains itself.
+                    None => self.error("scene::bad-id", span, format!("there is no texture {id} before it")),
+                }
+            }
+            if cost > MAX_LOOKUPS {
+                let message = format!("a texture made of more than {MAX_LOOKUPS} others");
+                self.error("scene::texture-depth", span, message);
+            }
+            costs.push(cost);
+        }
+    }
+
+    /// Where the texture was described, and the textures in it.
+    fn texture<'t>(&mut self, texture: &'t TextureDesc) -> (&'t Span, Vec<TextureId>) {
+        let mut inner = Vec::new();
+        let mut color = |check: &mut Self, input: &ColorInput, what: &str, span: &Span| match *input {
+            ColorInput::Constant(color) => check.color(color, what, span),
+            ColorInput::Texture(id) => inner.push(id),
+        };
+        let (to_uv, span) = match texture {
+            TextureDesc::Bitmap { image, to_uv, span, .. } => {
+                if *image as usize >= self.scene.images.len() {
+                    self.error("scene::bad-id", span, format!("there is no image {image}"));
+                }
+                (Some(to_uv), span)
+            }
+            TextureDesc::Checkerboard { color0, color1, to_uv, span } => {
+                color(self, color0, "color0", span);
+                color(self, color1, "color1", span);
+                (Some(to_uv), span)
+            }
+            TextureDesc::Scale { input, factor, span } => {
+                color(self, input, "the scaled color", span);
+                color(self, factor, "the scale", span);
+                (None, span)
+            }
+            TextureDesc::Mix { color0, color1, weight, span } => {
+                color(self, color0, "color0", span);
+                color(self, color1, "color1", span);
+                match *weight {
+                    ScalarInput::Texture(id) => inner.push(id),
+                    ScalarInput::Constant(weight) if (0.0..=1.0).contains(&weight) => {}
+                    ScalarInput::Constant(weight) => {
+                        self.error(
+                            "scene::weight",
+                            span,
+                            format!("a weight of {weight}: [0, 1] is possible"),
+                        );
+                    }
+                }
+                (None, span)
+            }
+            TextureDesc::MeshColor { scale, span, .. } => {
+                if !(*scale >= 0.0 && scale.is_finite()) {
+                    self.error("scene::bad-color", span, format!("mesh colors scaled by {scale}"));
+                }
+                (None, span)
+            }
+        };
+        if to_uv.is_some_and(|to_uv| !to_uv.is_finite()) {
+            self.error("scene::bad-transform", span, "the transform of texture coordinates is not finite");
+        }
+        (span, inner)
+    }
+
+    /// Is a mesh's colour in this input? It needs a mesh, which lights are not.
+    pub(super) fn has_mesh_color(&self, input: &ColorInput) -> bool {
+        let mut open: Vec<TextureId> = Vec::new();
+        let push = |input: &ColorInput, open: &mut Vec<TextureId>| {
+            if let ColorInput::Texture(id) = input {
+                open.push(*id);
+            }
+        };
+        push(input, &mut open);
+        // each texture leads to fewer than this, or it is an error already
+        for _ in 0..MAX_LOOKUPS {
+            let Some(TextureId(id)) = open.pop() else { return false };
+            match self.scene.textures.get(id as usize) {
+                Some(TextureDesc::MeshColor { .. }) => return true,
+                Some(TextureDesc::Checkerboard { color0, color1, .. }) => {
+                    push(color0, &mut open);
+                    push(color1, &mut open);
+                }
+                Some(TextureDesc::Scale { input, factor, .. }) => {
+                    push(input, &mut open);
+                    push(factor, &mut open);
+                }
+                Some(TextureDesc::Mix { color0, color1, weight, .. }) => {
+                    push(color0, &mut open);
+                    push(color1, &mut open);
+                    if let ScalarInput::Texture(id) = weight {
+                        open.push(*id);
+                    }
+                }
+                Some(TextureDesc::Bitmap { .. }) | None => {}
+            }
+        }
+        false
+    }
+}
