@@ -130,7 +130,7 @@ fn distant_textures_are_smooth_also_in_mirrors() {
                         .push(MaterialDesc::Conductor { eta_k: None, specular_reflectance: specular });
                     let corner = |x, z| Vec3::new(x, 30.0, z);
                     let upright =
-                        [corner(-6.0, 5.0), corner(-6.0, 15.0), corner(6.0, 15.0), corner(6.0, 5.0)];
+                        [corner(-6.0, 5.0), corner(6.0, 5.0), corner(6.0, 15.0), corner(-6.0, 15.0)];
                     let mut mirror = shape(sr_testing::scenes::polygon(&upright), None);
                     mirror.material = MaterialId(desc.materials.len() as u32 - 1);
                     desc.shapes.push(mirror);
