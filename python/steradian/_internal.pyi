@@ -269,3 +269,35 @@ def spherical_rectangle(
 ) -> Density: ...
 def affine(of: Density, matrix: NDArray[np.float64], offset: NDArray[np.float64]) -> Density:
     """``matrix``: row after row."""
+
+class VerifyJob:
+    """Checks of all building blocks that run."""
+
+    @staticmethod
+    def start(
+        names: Sequence[str], seed: int, failure_rate: float, flaws: bool, threads: int
+    ) -> VerifyJob: ...
+    def wait(self, seconds: float) -> bool: ...
+    def progress(self) -> tuple[int, int]: ...
+    def cancel(self) -> None: ...
+    def take(
+        self,
+    ) -> tuple[
+        list[
+            tuple[
+                str,
+                str,
+                str,
+                int,
+                float,
+                float,
+                list[tuple[str, str, tuple[list[float], list[float]] | None]],
+            ]
+        ],
+        float,
+        int,
+        list[tuple[str, str | None]],
+    ]: ...
+
+def verify_blocks() -> list[tuple[str, str, int]]:
+    """Group and name of every block, and how many cases it has."""

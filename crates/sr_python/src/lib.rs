@@ -12,6 +12,7 @@ mod node;
 mod output;
 mod render;
 mod scene;
+mod verify;
 
 use pyo3::prelude::*;
 
@@ -34,5 +35,7 @@ fn _internal(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(output::check_format, module)?)?;
     module.add_function(wrap_pyfunction!(output::write_image, module)?)?;
     module.add_function(wrap_pyfunction!(output::encode_png, module)?)?;
+    module.add_class::<verify::VerifyJob>()?;
+    module.add_function(wrap_pyfunction!(verify::verify_blocks, module)?)?;
     integrate::register(module)
 }

@@ -118,7 +118,8 @@ pub fn bsdf_models() -> Vec<(String, AnyBsdf<'static>)> {
     models.extend(principled::models());
     models.extend(compensated::models());
     for coat in COATS.iter() {
-        let name = format!("plastic {:?} {}", coat.distribution().kind(), coat.distribution().alpha().x);
+        let name =
+            format!("rough plastic {:?} {}", coat.distribution().kind(), coat.distribution().alpha().x);
         models.push((name.clone(), RoughPlastic::new(coat, GREEN, PINK, false).into()));
         models.push((format!("{name} black base"), RoughPlastic::new(coat, Rgb::ZERO, PINK, true).into()));
         models.push((format!("{name} no gloss"), RoughPlastic::new(coat, Rgb::ONE, Rgb::ZERO, true).into()));
@@ -130,14 +131,14 @@ pub fn bsdf_models() -> Vec<(String, AnyBsdf<'static>)> {
 fn rough(name: &str, distribution: Microfacet) -> Vec<(String, AnyBsdf<'static>)> {
     let copper = RoughConductor::new(distribution, Some(COPPER), PINK);
     let mut models = vec![
-        (format!("conductor {name}"), copper.into()),
-        (format!("masked conductor {name}"), masked(0.7, copper)),
+        (format!("rough conductor {name}"), copper.into()),
+        (format!("masked rough conductor {name}"), masked(0.7, copper)),
     ];
     // Refracted lobes are narrower by |η − 1|.
     let lobe_width = |eta: f32| distribution.alpha().min_element() * (eta - 1.0).abs();
     for eta in [1.5, 1.1, 1.0 / 1.33].into_iter().filter(|&eta| lobe_width(eta) > 0.02) {
         models.push((
-            format!("dielectric {eta} {name}"),
+            format!("rough dielectric {eta} {name}"),
             RoughDielectric::new(distribution, eta, PINK, GREEN).into(),
         ));
     }

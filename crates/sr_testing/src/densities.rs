@@ -146,8 +146,8 @@ fn tables(cases: &mut Cases) {
 
 fn from_functions(cases: &mut Cases) {
     let pi = std::f64::consts::PI;
-    cases.add("from a sine", FromPdf::new(f64::sin, 0.0, pi, 1e-9));
-    cases.add("from a bell, coarsely", FromPdf::new(|x| (-0.5 * x * x).exp(), -8.0, 20.0, 1e-2));
+    cases.add("from_pdf, a sine", FromPdf::new(f64::sin, 0.0, pi, 1e-9));
+    cases.add("from_pdf, a bell, coarsely", FromPdf::new(|x| (-0.5 * x * x).exp(), -8.0, 20.0, 1e-2));
     let steps = |x: f64| {
         if x < 0.1234 {
             3.0
@@ -157,11 +157,11 @@ fn from_functions(cases: &mut Cases) {
             x
         }
     };
-    cases.add("from steps with a hole", FromPdf::new(steps, 0.0, 1.0, 1e-6));
-    cases.add("from a pole at the end", FromPdf::new(|x: f64| 1.0 / x.sqrt(), 0.0, 4.0, 1e-6));
-    cases.add("from a pole inside", FromPdf::new(|x: f64| (x - 0.3).abs().powf(-0.4), 0.0, 1.0, 1e-6));
+    cases.add("from_pdf, steps with a hole", FromPdf::new(steps, 0.0, 1.0, 1e-6));
+    cases.add("from_pdf, a pole at the end", FromPdf::new(|x: f64| 1.0 / x.sqrt(), 0.0, 4.0, 1e-6));
+    cases.add("from_pdf, a pole inside", FromPdf::new(|x: f64| (x - 0.3).abs().powf(-0.4), 0.0, 1.0, 1e-6));
     cases.add(
-        "from a narrow peak",
+        "from_pdf, a narrow peak",
         FromPdf::new(|x: f64| 1.0 / (1.0 + 1e6 * (x - 0.5).powi(2)), 0.0, 1.0, 1e-6),
     );
 }

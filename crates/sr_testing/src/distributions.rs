@@ -17,8 +17,8 @@ use crate::lobe::Lobe;
 pub struct DistributionCase {
     /// What it is, and with which parameters.
     pub name: String,
-    chi2: Box<dyn Fn(Chi2Settings) -> TestReport>,
-    round_trip: Option<Box<dyn Fn(u64) -> RoundTrip>>,
+    chi2: Box<dyn Fn(Chi2Settings) -> TestReport + Send + Sync>,
+    round_trip: Option<Box<dyn Fn(u64) -> RoundTrip + Send + Sync>>,
 }
 
 /// How well `invert` undoes `sample`.
@@ -88,8 +88,8 @@ struct Cases(Vec<DistributionCase>);
 impl Cases {
     fn add<D, T>(&mut self, name: &str, distribution: D, test: T)
     where
-        D: Distribution + 'static,
-        T: Fn(&D, Chi2Settings) -> TestReport + 'static,
+        D: Distribution + Send + Sync + 'static,
+        T: Fn(&D, Chi2Settings) -> TestReport + Send + Sync + 'static,
     {
         let chi2 = Box::new(move |settings| test(&distribution, settings));
         self.0.push(DistributionCase { name: name.into(), chi2, round_trip: None });
@@ -98,8 +98,8 @@ impl Cases {
     /// `tolerance`: how far a uniform may come back from where it was, after its point was rounded.
     fn add_invertible<D, T>(&mut self, name: &str, distribution: D, tolerance: f32, test: T)
     where
-        D: Invert<Uniform: Compare> + Clone + 'static,
-        T: Fn(&D, Chi2Settings) -> TestReport + 'static,
+        D: Invert<Uniform: Compare> + Clone + Send + Sync + 'static,
+        T: Fn(&D, Chi2Settings) -> TestReport + Send + Sync + 'static,
     {
         self.add(name, distribution.clone(), test);
         let check = move |seed| round_trip(&distribution, tolerance, seed);
@@ -256,15 +256,19 @@ fn windows(cases: &mut Cases) {
 
 fn mixtures(cases: &mut Cases) {
     let cone = UniformCone::from_sin2(0.01).expect("a cone");
-    cases.add("pair", Mix2::new(0.3, CosineHemisphere, cone).expect("weights"), chi2::sphere);
+    cases.add("mixture of a pair", Mix2::new(0.3, CosineHemisphere, cone).expect("weights"), chi2::sphere);
     let nested = Mix2::new(0.5, CosineHemisphere, cone).expect("weights");
-    cases.add("pair in a pair", Mix2::new(0.25, UniformSphere, nested).expect("weights"), chi2::sphere);
+    cases.add(
+        "mixture of a pair in a pair",
+        Mix2::new(0.25, UniformSphere, nested).expect("weights"),
+        chi2::sphere,
+    );
     let parts = [
         (0.2, AnyHemisphere::Cosine(CosineHemisphere)),
         (0.0, AnyHemisphere::Uniform(UniformHemisphere)),
         (0.8, AnyHemisphere::Uniform(UniformHemisphere)),
     ];
-    cases.add("list", Mixture::new(parts).expect("weights"), chi2::sphere);
+    cases.add("mixture of a list", Mixture::new(parts).expect("weights"), chi2::sphere);
     let third = [0.5, -0.1, -0.8].map(|cos| (1.0 / 3.0, UniformCone::from_cos(cos).expect("a cone")));
-    cases.add("list of cones", Mixture::new(third).expect("weights"), chi2::sphere);
+    cases.add("mixture of cones", Mixture::new(third).expect("weights"), chi2::sphere);
 }

@@ -11,7 +11,7 @@ pub mod lobe;
 mod principled;
 pub mod scenes;
 
-pub use bsdfs::{BsdfCase, bsdf_cases, bsdf_models};
+pub use bsdfs::{BsdfCase, bsdf_cases, bsdf_models, lossless_models};
 pub use densities::{DensityCase, densities};
 pub use distributions::{DistributionCase, distribution_cases};
 pub use lights::light_scenes;

@@ -14,6 +14,7 @@ from steradian.cli.arguments import parse
 from steradian.cli.article import article
 from steradian.cli.info import info
 from steradian.cli.render import render
+from steradian.cli.verify import verify
 
 FAILED = 1
 INTERRUPTED = 130
@@ -37,7 +38,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _run(argv: Sequence[str] | None) -> int:
     arguments = parse(argv)
-    command = {"render": render, "info": info, "article": article}[arguments.command]
+    command = {"render": render, "info": info, "article": article, "verify": verify}[arguments.command]
     try:
         return command(arguments)
     except BrokenPipeError:

@@ -20,6 +20,15 @@ examples:
   steradian render scene.xml --strategy "mis(bsdf, light, heuristic=balance)" --json
   steradian info scene.xml
   steradian article --open                                       learn how it works
+  steradian verify                                               check every building block
+"""
+
+VERIFY_EXAMPLES = """\
+examples:
+  steradian verify                             everything, in a few minutes
+  steradian verify --list                      what there is
+  steradian verify "rough conductor" light     some blocks, or groups of them
+  steradian verify bsdf --html checks.html     and write a page, with plots of what fails
 """
 
 ARTICLE_EXAMPLES = """\
@@ -60,6 +69,7 @@ def parse(argv: Sequence[str] | None = None) -> argparse.Namespace:
     _add_render(commands)
     _add_info(commands)
     _add_article(commands)
+    _add_verify(commands)
     return parser.parse_args(argv)
 
 
@@ -152,6 +162,57 @@ def _add_article(commands: argparse._SubParsersAction[_Parser]) -> None:
     add("--quick", action="store_true", help="a sixteenth of the samples: seconds, larger errors")
     add("--open", action="store_true", help="show the page in a browser")
     add("--quiet", action="store_true", help="no progress and no summary; what does not hold is still said")
+
+
+def _add_verify(commands: argparse._SubParsersAction[_Parser]) -> None:
+    parser = commands.add_parser(
+        "verify",
+        help="check every building block: samplers against their densities, energy, reciprocity, …",
+        description="Checks scattering models, lights, distributions, filters and scenes with known answers, "
+        "with many parameters: that samples follow their density, that it integrates to one, that sample, "
+        "eval and pdf agree, that nothing is out of reach, reciprocity, energy, white furnaces, and that "
+        "nothing is ever NaN. Blocks that are wrong on purpose must be caught. Succeeds only if all holds.",
+        epilog=VERIFY_EXAMPLES,
+        formatter_class=_Wrapped,
+        allow_abbrev=False,
+    )
+    add = parser.add_argument
+    add("name", metavar="NAME", nargs="*", help="a group, a block, or part of a case's name (default: all)")
+    add("--list", action="store_true", help="list the blocks, and how many cases each has")
+    add("--html", metavar="FILE", help="write a page, with plots of what fails")
+    add("--json", action="store_true", help="print one JSON object on standard output")
+    add(
+        "--seed",
+        metavar="N",
+        type=_integer(0, 2**32 - 1),
+        default=1,
+        help="another seed, other samples (default: 1)",
+    )
+    add(
+        "--failure-rate",
+        metavar="P",
+        type=_probability,
+        default=1e-3,
+        help="how often a run may raise a false alarm (default: 0.001)",
+    )
+    add(
+        "--threads",
+        metavar="N",
+        type=_integer(0, _internal.MAX_THREADS),
+        default=0,
+        help="threads (default: 0, all that there are)",
+    )
+    add("--quiet", action="store_true", help="no progress and no table; what fails is still said")
+
+
+def _probability(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not 0 < value < 1:
+        raise argparse.ArgumentTypeError(f"{text!r} is not between 0 and 1")
+    return value
 
 
 def _add_scene(parser: argparse.ArgumentParser) -> None:

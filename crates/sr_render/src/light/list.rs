@@ -160,6 +160,15 @@ impl Lights {
         (0..self.extended.len() as u32).map(LightId)
     }
 
+    /// What kind of light one with an extent is.
+    pub fn kind(&self, LightId(id): LightId) -> &'static str {
+        match &self.extended[id as usize] {
+            Extended::Area(_) => "area",
+            Extended::Constant(_) => "constant",
+            Extended::Environment(_) => "environment",
+        }
+    }
+
     /// Is there a light with an extent?
     pub fn has_extended(&self) -> bool {
         !self.extended.is_empty()

@@ -18,7 +18,7 @@ mod quadrature;
 mod run;
 
 use glam::{Vec2, Vec3};
-use sr_sampling::{Area, Distribution, Line, Plane, SolidAngle};
+use sr_sampling::{Area, Distribution, Estimate, Line, Plane, SolidAngle};
 
 use crate::report::TestReport;
 use chart::{Interval, Parallelogram, Rectangle, Sphere};
@@ -46,6 +46,28 @@ impl Default for Chi2Settings {
 /// Tests a distribution of directions.
 pub fn sphere<D: Distribution<Measure = SolidAngle>>(distribution: &D, settings: Chi2Settings) -> TestReport {
     run::run(distribution, &Sphere, settings)
+}
+
+/// What a density integrates to, and what is drawn of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Mass {
+    /// ∫ pdf, by adaptive quadrature.
+    pub integral: f64,
+    /// Its estimated error.
+    pub error: f64,
+    /// The share of samples that are not `None`.
+    pub drawn: Estimate,
+}
+
+/// The mass of a distribution of directions: [`Mass::integral`] and [`Mass::drawn`] must agree.
+///
+/// # Errors
+/// The report of [`sphere`], if something is certainly wrong with the samples.
+pub fn mass_on_sphere<D: Distribution<Measure = SolidAngle>>(
+    distribution: &D,
+    settings: Chi2Settings,
+) -> Result<Mass, TestReport> {
+    run::count(distribution, &Sphere, settings).map(|counted| counted.mass())
 }
 
 /// Tests a distribution on the line, whose support lies between two numbers.

@@ -16,7 +16,14 @@ pub struct Cell {
 const MIN_EXPECTED: f64 = 5.0;
 
 /// Of samples where none were expected, rounding at a rim explains this share of all.
-pub(super) const STRAY_SHARE: f64 = 1e-5;
+const STRAY_SHARE: f64 = 1e-5;
+
+/// Are there more samples where none were expected than rounding explains? Strays are rare, so their number is nearly
+/// Poisson's: five standard deviations, and one for the tail of the smallest means, are never exceeded by chance.
+pub(super) fn too_many_strays(strays: u64, samples: u64) -> bool {
+    let mean = STRAY_SHARE * samples as f64;
+    strays as f64 > mean + 5.0 * mean.sqrt() + 1.0
+}
 
 /// Do observed counts follow expected ones? The cells make up everything that can happen.
 ///
@@ -30,7 +37,7 @@ pub fn pearson(cells: &[Cell], describe: impl Fn(usize) -> String) -> TestReport
     let samples: u64 = cells.iter().map(|c| c.observed).sum();
     let empty = |c: &Cell| c.expected < 1e-9;
     let strays: u64 = cells.iter().filter(|c| empty(c)).map(|c| c.observed).sum();
-    if strays as f64 > STRAY_SHARE * samples as f64 {
+    if too_many_strays(strays, samples) {
         let worst = (0..cells.len()).filter(|&i| empty(&cells[i])).max_by_key(|&i| cells[i].observed);
         let place = worst.map(describe).unwrap_or_default();
         return TestReport::impossible(format!("{strays} samples where the density is 0, most in {place}"));

@@ -1,11 +1,11 @@
 //! The test itself: cut, integrate, count, compare.
 
-use sr_sampling::{Cursor, Distribution, Independent, Measure, Real, Sample, SampleId, Uniforms};
+use sr_sampling::{Cursor, Distribution, Estimate, Independent, Measure, Real, Sample, SampleId, Uniforms};
 
-use super::Chi2Settings;
 use super::chart::{Chart, Coordinates};
-use super::pearson::{Cell, STRAY_SHARE, pearson};
+use super::pearson::{Cell, pearson, too_many_strays};
 use super::quadrature::{Integral, Patch};
+use super::{Chi2Settings, Mass};
 use crate::report::TestReport;
 
 /// A box may be halved this often along each axis.
@@ -80,7 +80,7 @@ impl Tally {
         let n = *samples as f64;
         let (count, what) = if *broken > 0 {
             (*broken, "carry a pdf that is not a positive number")
-        } else if *stray as f64 > STRAY_SHARE * n {
+        } else if too_many_strays(*stray, *samples) {
             (*stray, "lie where the density is 0")
         } else if *wrong_pdf as f64 > PDF_OUTLIERS * n {
             (*wrong_pdf, "carry a pdf that is not the density there")
@@ -102,8 +102,37 @@ impl Tally {
     }
 }
 
-/// The test on any space with coordinates.
-pub fn run<D, C>(distribution: &D, chart: &C, settings: Chi2Settings) -> TestReport
+/// Samples counted, and the density integrated, cell by cell.
+pub struct Counted {
+    tally: Tally,
+    cells: Vec<Cell>,
+    places: Vec<Patch>,
+    /// Estimated error of the sum of all integrals.
+    error: f64,
+}
+
+impl Counted {
+    /// ∫ density, its estimated error, and the share of samples that are not `None`.
+    pub fn mass(&self) -> Mass {
+        let n = self.tally.samples as f64;
+        let drawn = 1.0 - self.tally.none as f64 / n;
+        Mass {
+            integral: self.cells.iter().map(|c| c.expected).sum::<f64>() / n,
+            error: self.error,
+            drawn: Estimate {
+                mean: drawn,
+                stderr: (drawn * (1.0 - drawn) / n).sqrt(),
+                n: self.tally.samples,
+            },
+        }
+    }
+}
+
+/// Counts samples in cells, and integrates the density over each.
+///
+/// # Errors
+/// The report, if something is certainly wrong.
+pub fn count<D, C>(distribution: &D, chart: &C, settings: Chi2Settings) -> Result<Counted, TestReport>
 where
     D: Distribution,
     C: Chart<D::Measure>,
@@ -122,7 +151,7 @@ where
         samples[bin(at[0], nx) * ny + bin(at[1], ny)].push(at);
     }
     if let Some(report) = tally.verdict(outside) {
-        return report;
+        return Err(report);
     }
 
     let density = |at| distribution.pdf(chart.point(at)).to_f64() * chart.measure();
@@ -142,7 +171,21 @@ where
         let patch = Patch { low: [x * sx, y * sy], high: [(x + 1.0) * sx, (y + 1.0) * sy], halvings: [0; 2] };
         cutter.cut(patch, inside);
     }
-    judge::<D::Measure, C>(cutter.cells, &cutter.places, cutter.error, &tally, chart)
+    Ok(Counted { tally, cells: cutter.cells, places: cutter.places, error: cutter.error })
+}
+
+/// The test on any space with coordinates.
+pub fn run<D, C>(distribution: &D, chart: &C, settings: Chi2Settings) -> TestReport
+where
+    D: Distribution,
+    C: Chart<D::Measure>,
+{
+    match count(distribution, chart, settings) {
+        Ok(Counted { tally, cells, places, error }) => {
+            judge::<D::Measure, C>(cells, &places, error, &tally, chart)
+        }
+        Err(report) => report,
+    }
 }
 
 /// Compares expected and observed counts.

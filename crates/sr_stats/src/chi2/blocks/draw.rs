@@ -1,6 +1,6 @@
 //! Drawing samples, and what is noticed on the way.
 
-use super::super::pearson::STRAY_SHARE;
+use super::super::pearson::too_many_strays;
 use super::Blocks;
 use crate::report::TestReport;
 
@@ -45,7 +45,7 @@ impl Tally {
         let n = *samples as f64;
         let (count, what) = if *broken > 0 {
             (broken, "carry a pdf that is not a positive number")
-        } else if *stray as f64 > STRAY_SHARE * n {
+        } else if too_many_strays(*stray, *samples) {
             (stray, "lie where the density is 0")
         } else if *wrong as f64 > PDF_OUTLIERS * n {
             (wrong, "carry a pdf that is not the density there")

@@ -1,0 +1,1 @@
+"""Scattering models' time per call, ours and Mitsuba's."""
