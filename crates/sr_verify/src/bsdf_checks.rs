@@ -89,10 +89,10 @@ fn returned<B: Bsdf>(bsdf: &B, wo: Vec3, seed: u64, n: u32, of: impl Fn(Rgb) -> 
     (0..n).map(power).collect()
 }
 
-/// A surface does not return more light than it receives.
-pub fn energy<B: Bsdf>(bsdf: &B, wo: Vec3, seed: u64) -> Verdict {
+/// A surface does not return more light than it receives, or than is known of its model.
+pub fn energy<B: Bsdf>(bsdf: &B, wo: Vec3, limit: f64, seed: u64) -> Verdict {
     let estimate = returned(bsdf, wo, seed, 1 << 14, Vec3::max_element).estimate();
-    let excess = sr_sampling::Estimate { mean: (estimate.mean - 1.0 - 1e-4).max(0.0), ..estimate };
+    let excess = sr_sampling::Estimate { mean: (estimate.mean - limit - 1e-4).max(0.0), ..estimate };
     Verdict::Chance(TestReport { remark: format!("{estimate} of the light returns"), ..z_test(excess, 0.0) })
 }
 

@@ -45,7 +45,7 @@ impl Tally {
         let n = *samples as f64;
         let (count, what) = if *broken > 0 {
             (broken, "carry a pdf that is not a positive number")
-        } else if too_many_strays(*stray, *samples) {
+        } else if too_many_strays(*stray as u64, *samples as u64) {
             (stray, "lie where the density is 0")
         } else if *wrong as f64 > PDF_OUTLIERS * n {
             (wrong, "carry a pdf that is not the density there")
