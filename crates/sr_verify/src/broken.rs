@@ -174,10 +174,10 @@ impl BrokenLight {
     }
 
     fn subject(self, case: String) -> Subject {
-        let (mass, picture) = (self.clone(), self.clone());
+        let (mass, picture, bins) = (self.clone(), self.clone(), self.light.bins);
         Subject::new(Group::Light, case)
-            .check("chi-square", move |seed| directions::chi_square(&self, seed))
-            .check("normalised", move |seed| directions::normalised(&mass, seed))
+            .check("chi-square", move |seed| directions::chi_square(&self, bins, seed))
+            .check("normalised", move |seed| directions::normalised(&mass, bins, seed))
             .picture(move |seed| Picture::of(&picture, seed))
     }
 }

@@ -6,7 +6,7 @@ use sr_testing::bsdfs::{energy_limit, is_reciprocal};
 use sr_testing::{bsdf_cases, bsdf_models, lossless_models};
 
 use crate::bsdf_checks as checks;
-use crate::directions;
+use crate::directions::{self, BINS};
 use crate::picture::Picture;
 use crate::subject::{Group, Subject};
 
@@ -38,8 +38,8 @@ pub fn whole<B: Bsdf + Copy + Send + Sync + 'static>(case: String, bsdf: B, wo: 
     let mut subject = Subject::new(Group::Bsdf, case);
     if checks::scatters(&bsdf, wo) {
         subject = subject
-            .check("chi-square", move |seed| directions::chi_square(&bsdf.given(wo), seed))
-            .check("normalised", move |seed| directions::normalised(&bsdf.given(wo), seed))
+            .check("chi-square", move |seed| directions::chi_square(&bsdf.given(wo), BINS, seed))
+            .check("normalised", move |seed| directions::normalised(&bsdf.given(wo), BINS, seed))
             .picture(move |seed| Picture::of(&bsdf.given(wo), seed));
     }
     if bsdf.lobes().delta {

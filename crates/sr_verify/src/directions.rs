@@ -6,20 +6,31 @@ use sr_stats::{TestReport, z_test};
 
 use crate::subject::Verdict;
 
-/// How much work the test of shapes does …
-const SHAPE: Chi2Settings = Chi2Settings { samples: 1 << 16, bins: (16, 32), seed: 0 };
+/// Cells in z and azimuth.
+pub const BINS: (usize, usize) = (16, 32);
 
-/// … and that of the mass, where quadrature knows the density's well enough from fewer.
-const MASS: Chi2Settings = Chi2Settings { samples: 1 << 14, ..SHAPE };
+/// How many samples tell the shape …
+const SHAPE: u32 = 1 << 16;
+
+/// … and how many the mass: quadrature knows that of the density well enough from fewer.
+const MASS: u32 = 1 << 14;
 
 /// Samples follow the density.
-pub fn chi_square<D: Distribution<Measure = SolidAngle>>(distribution: &D, seed: u64) -> Verdict {
-    Verdict::Chance(chi2::sphere(distribution, Chi2Settings { seed, ..SHAPE }))
+pub fn chi_square<D: Distribution<Measure = SolidAngle>>(
+    distribution: &D,
+    bins: (usize, usize),
+    seed: u64,
+) -> Verdict {
+    Verdict::Chance(chi2::sphere(distribution, Chi2Settings { samples: SHAPE, bins, seed }))
 }
 
 /// ∫ pdf is the probability of a sample, to 0.1 %.
-pub fn normalised<D: Distribution<Measure = SolidAngle>>(distribution: &D, seed: u64) -> Verdict {
-    match chi2::mass_on_sphere(distribution, Chi2Settings { seed, ..MASS }) {
+pub fn normalised<D: Distribution<Measure = SolidAngle>>(
+    distribution: &D,
+    bins: (usize, usize),
+    seed: u64,
+) -> Verdict {
+    match chi2::mass_on_sphere(distribution, Chi2Settings { samples: MASS, bins, seed }) {
         Err(report) => Verdict::Chance(report),
         Ok(Mass { integral, error, drawn }) => {
             // Half of the bar is left to quadrature, and as much as chance explains to counting.

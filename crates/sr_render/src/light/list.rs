@@ -166,6 +166,8 @@ impl Lights {
             Extended::Area(_) => "area",
             Extended::Constant(_) => "constant",
             Extended::Environment(_) => "environment",
+            Extended::Sky(_) => "sky",
+            Extended::Sun(_) => "sun",
         }
     }
 
