@@ -69,11 +69,12 @@ impl Step {
         }
     }
 
-    /// What is left of the light from `wi`, which is `inside` seen from inside; 0 on different sides.
+    /// What is left of the light from `wi`, which is `inside` seen from inside; 0 on different sides, and in the surface
+    /// itself, where f would be infinite.
     #[inline]
     pub fn dimming(&self, wi: Vec3, inside: Vec3) -> f32 {
         let Step::Tilt(tilt) = self else { return 1.0 };
-        if !(wi.z * inside.z > 0.0) {
+        if !(wi.z * inside.z > 0.0 && wi.z.abs() > 1e-7) {
             return 0.0;
         }
         // 2 / (1 + √(1 + α² tan²θ)), free of poles.

@@ -28,7 +28,9 @@ pub struct VerifyJob {
 }
 
 fn select(all: Vec<Subject>, names: &[String]) -> Vec<Subject> {
-    all.into_iter().filter(|subject| names.is_empty() || names.iter().any(|name| subject.is_named(name))).collect()
+    all.into_iter()
+        .filter(|subject| names.is_empty() || names.iter().any(|name| subject.is_named(name)))
+        .collect()
 }
 
 /// Group and name of every block, and how many cases it has.

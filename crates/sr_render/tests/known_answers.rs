@@ -79,7 +79,7 @@ fn check(sampler: SequenceKind, first_spp: u32, most_spp: u32) {
 
 #[test]
 fn sobol_points_find_every_known_answer() {
-    check(SequenceKind::Sobol, 1 << 14, 1 << 22);
+    check(SequenceKind::Sobol, 1 << 14, 1 << 24);
 }
 
 #[test]

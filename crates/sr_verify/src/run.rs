@@ -141,7 +141,7 @@ pub struct Flaw {
 }
 
 /// A p-value below this is proof that something is wrong, also among hundreds of tests.
-const CERTAIN: f64 = 1e-9;
+const CERTAIN: f64 = 1e-6;
 
 /// Runs checks on blocks that are wrong on purpose, from the quickest, until one notices. `done` counts all their checks.
 pub fn catch(subjects: &[Subject], seed: u64, done: &AtomicUsize, cancel: &AtomicBool) -> Vec<Flaw> {
