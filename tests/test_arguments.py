@@ -1,4 +1,4 @@
-"""Arguments that make no sense are one clear exception, which names argument and value; those that do are kept."""
+"""Arguments that make no sense are one clear exception, which names argument and value."""
 
 import copy
 import pickle
@@ -19,23 +19,47 @@ N, U = sr.Normal(), sr.Uniform()
         (lambda: sr.Truncated(3, 0, 1), TypeError, "of must be a distribution, not 3"),
         (lambda: sr.Affine(3, 1), TypeError, "of must be a distribution, not 3"),
         (lambda: sr.Learned(3, [], []), TypeError, "over must be a distribution, not 3"),
-        (lambda: sr.integrate(np.cos, over=U, threads=1.5), TypeError, "threads must be a whole number, not 1.5"),
+        (
+            lambda: sr.integrate(np.cos, over=U, threads=1.5),
+            TypeError,
+            "threads must be a whole number, not 1.5",
+        ),
         (lambda: sr.integrate(np.cos, over=U, threads=None), TypeError, "threads must be a whole number"),
-        (lambda: sr.integrate(np.cos, over=U, sequence=None), TypeError, 'sequence must be "independent", "str'),
+        (
+            lambda: sr.integrate(np.cos, over=U, sequence=None),
+            TypeError,
+            'sequence must be "independent", "str',
+        ),
         (lambda: sr.integrate(np.cos, over=U, replicates=1 << 40), ValueError, "replicates is 1099511627776"),
-        (lambda: sr.integrate(np.cos, over=U, on_progress=3), TypeError, "on_progress must be a function, not 3"),
+        (
+            lambda: sr.integrate(np.cos, over=U, on_progress=3),
+            TypeError,
+            "on_progress must be a function, not 3",
+        ),
         (lambda: sr.integrate(np.cos, over=U, rtol="a"), TypeError, "rtol must be a number, not 'a'"),
         (lambda: sr.integrate(np.cos, over=U, seconds="1"), TypeError, "seconds must be a number, not '1'"),
         (lambda: sr.integrate(np.cos, over=U, seed=1.5), TypeError, "seed must be a whole number, not 1.5"),
-        (lambda: sr.integrate(np.cos, over=[(0, np.inf)]), ValueError, r"over\[0\] is \(0, inf\).* Exponential"),
+        (
+            lambda: sr.integrate(np.cos, over=[(0, np.inf)]),
+            ValueError,
+            r"over\[0\] is \(0, inf\).* Exponential",
+        ),
         (lambda: sr.mis_integrate(np.cos, [U], heuristic=None), TypeError, 'heuristic must be "balance"'),
         (lambda: sr.Uniform("a", 1), TypeError, "low must be real numbers, not 'a'"),
         (lambda: sr.Uniform([0, 0], [1, 1, 1]), ValueError, r"low and high have shapes \(2,\) and \(3,\)"),
         (lambda: sr.Normal(None, 1), TypeError, "mean must be a number, not None"),
         (lambda: sr.FromPdf(3, 0, 1), TypeError, "f must be a function, not 3"),
-        (lambda: sr.FromPdf(lambda x: x + 1j, 0, 1), TypeError, "f returned ndarray, which is no array of real"),
+        (
+            lambda: sr.FromPdf(lambda x: x + 1j, 0, 1),
+            TypeError,
+            "f returned ndarray, which is no array of real",
+        ),
         (lambda: sr.testing.chi2(N, n=1.5), TypeError, "n must be a whole number, not 1.5"),
-        (lambda: sr.testing.chi2(sr.Product([U] * 201)), ValueError, "over has 201 coordinates; .* up to 200"),
+        (
+            lambda: sr.testing.chi2(sr.Product([U] * 201)),
+            ValueError,
+            "over has 201 coordinates; .* up to 200",
+        ),
         (lambda: N.draw(0), ValueError, "n is 0; it must be positive"),
         (lambda: N.draw(9, -1), ValueError, "seed is -1; it must be from 0 to 2\\^64 - 1"),
         (lambda: sr.Truncated(N, 0, 0), ValueError, "either may be infinite"),
@@ -53,7 +77,8 @@ def test_bad_arguments_are_named(call, error, message):
     [
         '{"type": "Mixture", "components": [3]}',
         '{"type": "Truncated", "of": 3, "low": 0, "high": 1}',
-        '{"type": "Learned", "over": {"type": "Uniform"}, "components": [[[[0, 1]], [], []]], "shares": [-64]}',
+        '{"type": "Learned", "over": {"type": "Uniform"}, '
+        '"components": [[[[0, 1]], [], []]], "shares": [-64]}',
     ],
 )
 def test_bad_files_are_named(tmp_path, text):
@@ -78,7 +103,11 @@ def test_nobody_else_can_change_a_distribution():
     counts[0], low[0], values[0, 0] = 100, -9, 100
     for p, text, x in zip(made, texts, at, strict=True):
         assert repr(p) == text
-        for again in (pickle.loads(pickle.dumps(p)), copy.deepcopy(p), sr.Distribution.from_dict(p.to_dict())):
+        for again in (
+            pickle.loads(pickle.dumps(p)),
+            copy.deepcopy(p),
+            sr.Distribution.from_dict(p.to_dict()),
+        ):
             assert again.pdf(x) == p.pdf(x)
 
 
@@ -105,7 +134,9 @@ def test_an_unfinished_mixture_says_so():
         lambda: sr.integrate(np.cos, over=part),
         lambda: (part + 0.9 * U).mean,
     ):
-        with pytest.raises(ValueError, match=r"the weights of 0\.3 \* Normal\(.* sum to (0\.3|1\.2), not to 1"):
+        with pytest.raises(
+            ValueError, match=r"the weights of 0\.3 \* Normal\(.* sum to (0\.3|1\.2), not to 1"
+        ):
             ask()
     with pytest.raises(TypeError):
         part + N
