@@ -301,3 +301,6 @@ class VerifyJob:
 
 def verify_blocks() -> list[tuple[str, str, int]]:
     """Group and name of every block, and how many cases it has."""
+
+def find_numpy() -> None:
+    """Looks up NumPy's functions, which must not be interrupted."""

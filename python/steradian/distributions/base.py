@@ -17,6 +17,8 @@ from steradian.distributions.arguments import array, choice, short, whole
 if TYPE_CHECKING:
     from steradian.distributions.composite import Mixture, Product
 
+_internal.find_numpy()
+
 Array = NDArray[np.float64]
 
 SEQUENCES = ("independent", "stratified", "sobol", "lattice")

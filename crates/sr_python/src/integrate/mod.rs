@@ -17,10 +17,15 @@ use pyo3::prelude::*;
 
 pub use density::Density;
 
+/// Looks up NumPy's functions, which the first array would do, and take a Ctrl-C that comes then for NumPy's absence.
+#[pyfunction]
+fn find_numpy(py: Python<'_>) {
+    drop(PyArray1::<f64>::zeros(py, 0, false));
+}
+
 /// Adds what this folder has to the module.
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    // The first array looks up NumPy's functions, and would take a Ctrl-C that comes then for NumPy's absence.
-    drop(PyArray1::<f64>::zeros(module.py(), 0, false));
+    module.add_function(wrap_pyfunction!(find_numpy, module)?)?;
     module.add_class::<Density>()?;
     module.add_class::<native::Native>()?;
     module.add_class::<run::Integral>()?;
