@@ -69,7 +69,8 @@ pub fn covered<B: Bsdf>(bsdf: &B, wo: Vec3, seed: u64) -> Verdict {
 pub fn reciprocal<B: Bsdf>(bsdf: &B, wo: Vec3, seed: u64) -> Verdict {
     let eta_from = |wo| samples(bsdf, wo, 7, 200).map(|s| s.eta).find(|&eta| eta != 1.0);
     // Where reflection is all but total, the other side knows.
-    let eta = eta_from(wo).or_else(|| eta_from(-wo).map(|eta| 1.0 / eta)).unwrap_or(1.0);
+    let beyond = |w: Vec3| eta_from(w).or_else(|| eta_from(-w).map(|eta| 1.0 / eta));
+    let eta = beyond(wo).or_else(|| beyond(Vec3::Z * wo.z.signum())).unwrap_or(1.0);
     Verdict::of((0..500).find_map(|i| {
         let wi = uniform_sphere(uniforms(seed, i).1);
         let scale = if wo.z * wi.z > 0.0 { 1.0 } else { eta * eta };
@@ -145,8 +146,9 @@ pub fn delta_lobes<B: Bsdf>(bsdf: &B, wo: Vec3, seed: u64) -> Verdict {
     }))
 }
 
-/// No direction and no corner of the unit cube gives NaN, infinity or a negative number.
-pub fn finite<B: Bsdf>(bsdf: &B, wo: Vec3, seed: u64) -> Verdict {
+/// No direction and no corner of the unit cube gives NaN, infinity or a negative number. What is refracted changes the side,
+/// unless the normal is `tilted`.
+pub fn finite<B: Bsdf>(bsdf: &B, wo: Vec3, tilted: bool, seed: u64) -> Verdict {
     let tiny = f32::MIN_POSITIVE;
     let mut directions = vec![
         wo,
@@ -182,8 +184,7 @@ pub fn finite<B: Bsdf>(bsdf: &B, wo: Vec3, seed: u64) -> Verdict {
             && s.pdf.is_finite()
             && (s.wi.length() - 1.0).abs() < 1e-5
             && s.eta > 0.0
-            // In the surface itself, rounding decides which side is which.
-            && (s.eta == 1.0 || s.wi.z * wo.z <= 0.0 || wo.z.abs() < 1e-6)
+            && (s.eta == 1.0 || tilted || s.wi.z * wo.z <= 0.0)
             && !(s.delta && s.pdf > 1.0 + 1e-6);
         (!right).then(|| format!("wo = {wo:?}, u = {u_lobe}, {u:?}: {s:?}"))
     };

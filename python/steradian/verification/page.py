@@ -109,7 +109,7 @@ def _plot(failure: Failure) -> str:
         axes.set(title=title, xlabel="azimuth, degrees", ylabel="cos θ")
         figure.colorbar(image, ax=axes)
     buffer = io.StringIO()
-    figure.savefig(buffer, format="svg")
+    figure.savefig(buffer, format="svg", metadata={"Date": None})
     svg = buffer.getvalue()
     return f'<figure class="row">{svg[svg.index("<svg") :]}</figure>'
 
