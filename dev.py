@@ -119,6 +119,9 @@ def test(pytest_arguments):
 def cargo_checks():
     """(name, command, environment) of what Rust's tools check."""
     python = {"PYO3_PYTHON": str(PYTHON)}
+    if os.environ.get("CI"):
+        # Nothing is compiled twice there, and what a second time would need takes more room than the rest.
+        python["CARGO_INCREMENTAL"] = "0"
     return [
         ("cargo fmt", ["cargo", "fmt", "--all", "--check"], {}),
         (

@@ -11,7 +11,7 @@ from pathlib import Path
 BENCHES = Path(__file__).resolve().parent
 sys.path[:0] = [str(BENCHES), str(BENCHES.parent)]
 
-from gallery import arguments  # noqa: E402
+from gallery import arguments  # noqa: E402 (after its folder is on the path)
 
 from beside import environment  # noqa: E402 (after its folder is on the path)
 

@@ -143,7 +143,9 @@ def test_every_density_gets_two_independent_points():
 
 
 def test_masked_numbers_are_none():
-    masked = lambda x: np.ma.masked_where(x > 0.5, x)  # noqa: E731
+    def masked(x):
+        return np.ma.masked_where(x > 0.5, x)
+
     with pytest.raises(sr.IntegrandError, match="f returned NaN at x = 0"):
         sr.integrate(masked, over=U)
     with pytest.raises(ValueError, match="counts is a masked array"):

@@ -72,7 +72,9 @@ def test_the_same_call_gives_the_same_bits():
 
 
 def test_limits():
-    f = lambda x: np.exp(-x.sum(axis=1))  # noqa: E731
+    def f(x):
+        return np.exp(-x.sum(axis=1))
+
     loose = sr.integrate(f, over=CUBE, rtol=1e-3, sequence="independent")
     tight = sr.integrate(f, over=CUBE, rtol=1e-4, sequence="independent")
     assert loose.relative_error <= 1e-3 < 0.1 and tight.relative_error <= 1e-4
@@ -98,7 +100,9 @@ def test_progress_is_told_and_may_stop():
 
 
 def test_a_control_variate_removes_what_it_explains():
-    f = lambda x: np.exp(x)  # noqa: E731
+    def f(x):
+        return np.exp(x)
+
     plain = sr.integrate(f, over=sr.Uniform(), n=4096, sequence="independent")
     helped = sr.integrate(f, over=sr.Uniform(), n=4096, sequence="independent", control=(lambda x: x, 0.5))
     assert helped.stderr < 0.2 * plain.stderr
@@ -114,7 +118,9 @@ def test_a_control_variate_removes_what_it_explains():
 
 
 def test_multiple_importance_sampling_beats_its_parts():
-    f = lambda x: np.exp(-2000 * (x - 0.3) ** 2) + 0.01 * x  # noqa: E731
+    def f(x):
+        return np.exp(-2000 * (x - 0.3) ** 2) + 0.01 * x
+
     exact = math.sqrt(math.pi / 2000) + 0.005
     parts = [sr.Uniform(), sr.Truncated(sr.Normal(0.3, 0.02), 0, 1)]
     alone = sr.integrate(f, over=parts[0], n=8192, sequence="independent")
@@ -127,9 +133,14 @@ def test_multiple_importance_sampling_beats_its_parts():
 
 
 def test_resampling_approaches_its_target():
-    f = lambda x: np.exp(-200 * (x - 0.3) ** 2) * (2 + np.sin(60 * x))  # noqa: E731
+    def f(x):
+        return np.exp(-200 * (x - 0.3) ** 2) * (2 + np.sin(60 * x))
+
     exact = sr.integrate(f, over=sr.Uniform(), n=1 << 16, sequence="lattice").mean
-    target = lambda x: np.exp(-200 * (x - 0.3) ** 2) + 1e-4  # noqa: E731
+
+    def target(x):
+        return np.exp(-200 * (x - 0.3) ** 2) + 1e-4
+
     errors = []
     for candidates in [1, 8, 64]:
         estimate = sr.ris_integrate(

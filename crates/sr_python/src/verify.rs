@@ -67,9 +67,11 @@ impl VerifyJob {
         let (done, cancel) = (Arc::new(AtomicUsize::new(0)), Arc::new(AtomicBool::new(false)));
         let (counts, stop) = (Arc::clone(&done), Arc::clone(&cancel));
         let job = Job::start(threads, move || {
-            let Outcome { rows, level, decided_by_chance } =
-                sr_verify::run(&right, seed, failure_rate, &counts, &stop);
-            let flaws = sr_verify::catch(&broken, seed, &counts, &stop);
+            // Side by side, so that no core waits for the last of either.
+            let (Outcome { rows, level, decided_by_chance }, flaws) = rayon::join(
+                || sr_verify::run(&right, seed, failure_rate, &counts, &stop),
+                || sr_verify::catch(&broken, seed, &counts, &stop),
+            );
             let flaws = flaws.into_iter().map(|flaw| (flaw.case, flaw.caught_by)).collect();
             Ok((rows.into_iter().map(plain).collect(), level, decided_by_chance, flaws))
         })?;

@@ -8,17 +8,8 @@ use sr_render::filter::PixelFilter;
 use sr_render::{Control, Film, RenderSettings, RenderedImage, Scene, render};
 use sr_sampling::SequenceKind;
 use sr_scene::{CameraDesc, Crop, FilmDesc, FilterDesc, FovAxis, Projection, SceneDesc, Span};
+use sr_testing::FILTERS;
 use sr_testing::scenes::{diffuse_scene, polygon, shape};
-
-const FILTERS: [FilterDesc; 7] = [
-    FilterDesc::Box { radius: 0.5 },
-    FilterDesc::Tent { radius: 1.0 },
-    FilterDesc::Gaussian { stddev: 0.5, radius: 2.0 },
-    FilterDesc::Mitchell { b: 1.0 / 3.0, c: 1.0 / 3.0 },
-    FilterDesc::CatmullRom,
-    FilterDesc::Lanczos { lobes: 3 },
-    FilterDesc::BlackmanHarris { radius: 1.5 },
-];
 
 /// Columns of the film, of which the first [`EDGE`] shine.
 const COLUMNS: u32 = 12;

@@ -127,7 +127,7 @@ fn area_lights() -> Vec<KnownScene> {
             0.7,
         ),
         checkered("floor under a checkered rectangle", 1),
-        checkered("floor under a checkered mesh", 5),
+        checkered("floor under a checkered mesh", 3),
     ]
 }
 

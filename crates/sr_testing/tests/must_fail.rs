@@ -66,6 +66,12 @@ fn a_scaled_pdf() {
     }
 }
 
+/// Far too large everywhere: said at once, and not after learning where most.
+#[test]
+fn a_density_of_a_million() {
+    rejected(test(uniform, |_| 1e6));
+}
+
 #[test]
 fn a_missing_cosine() {
     rejected(test(cosine, |w| UniformHemisphere.pdf(w)));

@@ -25,6 +25,8 @@ fn subject(case: DensityCase) -> Subject {
     });
     let of = Arc::clone(&density);
     subject = subject.check("finite", move |seed| finite(of.as_ref(), seed));
+    let of = Arc::clone(&density);
+    subject = subject.check("support", move |seed| nothing_beyond_support(of.as_ref(), seed));
     if density.space() == Space::Line && density.cumulative().is_some() {
         let of = Arc::clone(&density);
         subject = subject.check("cdf", move |seed| {
@@ -33,6 +35,9 @@ fn subject(case: DensityCase) -> Subject {
         });
         let of = Arc::clone(&density);
         subject = subject.check("icdf", move |seed| icdf_undoes_cdf(of.as_ref(), seed));
+        let of = Arc::clone(&density);
+        let steep = subject.case.contains("thousand");
+        subject = subject.check("slope", move |_| is_slope_of_cdf(of.as_ref(), steep));
     }
     if density.inverse().is_some() {
         let of = Arc::clone(&density);
@@ -77,13 +82,75 @@ fn finite(density: &dyn Density, seed: u64) -> Verdict {
 
 fn icdf_undoes_cdf(density: &dyn Density, seed: u64) -> Verdict {
     let (drawn, cumulative) = (Drawn::independent(density, 2000, seed), cumulative(density));
+    let [[low, high]] = density.support()[..] else { return Verdict::Fails("has no interval".into()) };
+    let near = |a: f64, b: f64| a == b || (a - b).abs() <= 1e-9 * (high - low);
+    let ends = [(0.0, low), (1.0, high)];
+    let end = ends.into_iter().find(|&(u, x)| !near(cumulative.icdf(u), x) || cumulative.cdf(x) != u);
+    if let Some((u, x)) = end {
+        return Verdict::Fails(format!(
+            "cdf({x}) = {}, icdf({u}) = {}",
+            cumulative.cdf(x),
+            cumulative.icdf(u)
+        ));
+    }
     Verdict::of(drawn.x.iter().zip(&drawn.pdf).find_map(|(&x, &pdf)| {
-        let u = cumulative.cdf(x);
+        let (u, above) = (cumulative.cdf(x), cumulative.above(x));
         // u is rounded by 10⁻¹⁶, and x.
         let tolerance = 1e-9 * x.abs().min(1.0 / pdf) + 1e-13 / pdf + 8.0 * f64::EPSILON * x.abs();
-        let back = cumulative.icdf(u);
-        let off = !((back - x).abs() <= tolerance) || !(0.0..=1.0).contains(&u);
-        off.then(|| format!("cdf({x}) = {u}, icdf of that {back}"))
+        let (back, from_above) = (cumulative.icdf(u), cumulative.inverse_above(above));
+        let off = [back, from_above].iter().any(|back| !((back - x).abs() <= tolerance))
+            || !(0.0..=1.0).contains(&u)
+            || !((above + u - 1.0).abs() < 1e-12);
+        off.then(|| format!("cdf({x}) = {u}, icdf of that {back}; {above} above, from which {from_above}"))
+    }))
+}
+
+/// ∫ p over the intervals between many quantiles is what the distribution function says. Where the density jumps or has a
+/// pole the rule is off, but that is in few of them, unless it is `steep` almost everywhere.
+fn is_slope_of_cdf(density: &dyn Density, steep: bool) -> Verdict {
+    const INTERVALS: usize = 4000;
+    // Gauss and Legendre's rule of three points.
+    const NODES: [(f64, f64); 3] =
+        [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
+    let cumulative = cumulative(density);
+    let edges: Vec<f64> = (1..INTERVALS).map(|i| cumulative.icdf(i as f64 / INTERVALS as f64)).collect();
+    let x: Vec<f64> = edges
+        .windows(2)
+        .flat_map(|pair| NODES.map(|(node, _)| pair[0] * (1.0 - node) + pair[1] * node))
+        .collect();
+    let mut pdf = vec![0.0; x.len()];
+    if let Err(error) = density.pdf(Columns::new(&x, x.len()), &mut pdf) {
+        return Verdict::Fails(error.to_string());
+    }
+    let is_off = |(pair, pdf): &(&[f64], &[f64])| {
+        let integral: f64 = pdf.iter().zip(NODES).map(|(p, (_, w))| p * w * (pair[1] - pair[0])).sum();
+        let rounding = 4.0 * f64::EPSILON * pair[1].abs() / (pair[1] - pair[0]);
+        !((integral * INTERVALS as f64 - 1.0).abs() < 1e-3 + rounding)
+    };
+    let off = edges.windows(2).zip(pdf.chunks(3)).filter(is_off).count();
+    let allowed = if steep { INTERVALS / 2 } else { 40 };
+    let many = off > allowed;
+    Verdict::of(
+        many.then(|| format!("∫ p is not the difference of the cdf in {off} of {INTERVALS} intervals")),
+    )
+}
+
+/// Beyond the support, at infinity and of NaN the density is 0.
+fn nothing_beyond_support(density: &dyn Density, seed: u64) -> Verdict {
+    let inside = Drawn::independent(density, 1, seed).x;
+    let at = |j: usize, value: f64| {
+        let mut x = inside.clone();
+        x[j] = value;
+        let mut pdf = [f64::NAN];
+        match density.pdf(Columns::new(&x, 1), &mut pdf) {
+            Ok(()) => (pdf[0] != 0.0).then(|| format!("the density of {x:?} is {}", pdf[0])),
+            Err(error) => Some(error.to_string()),
+        }
+    };
+    Verdict::of(density.support().into_iter().enumerate().find_map(|(j, [low, high])| {
+        let beyond =
+            [low - (1.0 + low.abs()), high + (1.0 + high.abs()), f64::NAN, f64::INFINITY, -f64::INFINITY];
+        beyond.into_iter().find_map(|value| at(j, value))
     }))
 }
 
@@ -97,6 +164,13 @@ fn invert_undoes_sample(density: &dyn Density, tolerance: f64, seed: u64) -> Ver
     }
     let below_one = u.iter().map(|u| u.min(1.0 - f64::EPSILON / 2.0)).collect();
     let again = Drawn::new(density, below_one);
+    // What is not in the support has no uniforms.
+    let mut nothing = vec![0.0; density.uniforms()];
+    let outside = vec![f64::NAN; density.space().dim()];
+    let asked = inverse.invert(Columns::new(&outside, 1), ColumnsMut::new(&mut nothing, 1));
+    if asked.is_err() || !nothing.iter().all(|u| u.is_nan()) {
+        return Verdict::Fails(format!("NaN has the uniforms {nothing:?}"));
+    }
     let counts = density.space() == Space::Counting;
     Verdict::of((0..n).filter(|&i| drawn.pdf[i] > 0.0).find_map(|i| {
         if counts {
@@ -107,7 +181,7 @@ fn invert_undoes_sample(density: &dyn Density, tolerance: f64, seed: u64) -> Ver
         let slack = if tolerance > 1e-4 { drawn.uniforms().get(i, 1) } else { 1.0 };
         (0..density.uniforms()).find_map(|j| {
             let (there, back) = (drawn.uniforms().get(i, j), Columns::new(&u, n).get(i, j));
-            let off = !((there - back).abs() <= tolerance / slack);
+            let off = !((there - back).abs() <= tolerance / slack) || !(0.0..1.0).contains(&back);
             off.then(|| format!("uniform {j}, {there}, came back as {back}"))
         })
     }))

@@ -34,7 +34,7 @@ pub fn subjects() -> Vec<Subject> {
                 continue;
             }
             let scene = Arc::clone(&scene);
-            let subject = Subject::new(Group::Scene, format!("{strategy}: {}", known.name));
+            let subject = Subject::new(Group::Scene, format!("{}: {strategy}", known.name));
             all.push(subject.check("known answer", move |seed| answers(&scene, strategy, answer, seed)));
         }
     }

@@ -26,6 +26,9 @@ pub enum Group {
 }
 
 impl Group {
+    const ALL: [Self; 7] =
+        [Self::Bsdf, Self::Light, Self::Warp, Self::Distribution, Self::Filter, Self::Weights, Self::Scene];
+
     /// Its name.
     pub fn name(self) -> &'static str {
         match self {
@@ -88,11 +91,13 @@ impl Subject {
         Self { group, block: block_of(&case), case, checks: Vec::new(), picture: None }
     }
 
-    /// Is it meant by a name: of its group, its block, or part of its case, in small or capital letters?
+    /// Is it meant by a name: of its group, or else part of its case, in small or capital letters?
     pub fn is_named(&self, name: &str) -> bool {
         let name = name.to_lowercase();
-        let case = format!("{}/{}", self.group.name(), self.case).to_lowercase();
-        self.group.name() == name || self.block.to_lowercase() == name || case.contains(&name)
+        if Group::ALL.iter().any(|group| group.name() == name) {
+            return self.group.name() == name;
+        }
+        format!("{}/{}", self.group.name(), self.case).to_lowercase().contains(&name)
     }
 
     /// With another check.

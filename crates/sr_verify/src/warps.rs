@@ -7,7 +7,7 @@ use sr_testing::distribution_cases;
 
 use crate::subject::{Group, Subject, Verdict};
 
-const SETTINGS: Chi2Settings = Chi2Settings { samples: 1 << 17, bins: (16, 32), seed: 0 };
+const SETTINGS: Chi2Settings = Chi2Settings { samples: 1 << 18, bins: (16, 32), seed: 0 };
 
 pub fn subjects() -> Vec<Subject> {
     let each = |case: sr_testing::DistributionCase| {

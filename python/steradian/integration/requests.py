@@ -63,7 +63,11 @@ def make_request(
     on_round = None
     if on_progress is not None:
         function("on_progress", on_progress)
-        on_round = lambda *values: on_progress(IntegrationProgress(*values))  # noqa: E731
+
+        def report(*values: Any) -> object:
+            return on_progress(IntegrationProgress(*values))
+
+        on_round = report
     return {
         "sequence": choice("sequence", sequence, SEQUENCES),
         "replicates": whole("replicates", replicates, most=1 << 16),

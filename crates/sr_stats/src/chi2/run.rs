@@ -17,6 +17,9 @@ const MAX_PATCHES_PER_CELL: u32 = 4_000;
 /// A cell that holds more than this many times the mean share of a cell is cut into several.
 const MAX_SHARE: f64 = 4.0;
 
+/// A density that integrates to so much is wrong beyond doubt: no use in learning where else it is too large, cell by cell.
+const TOO_MUCH: f64 = 2.0;
+
 /// A sample's `pdf` may differ from the density at it by this factor, since the point is rounded …
 const PDF_TOLERANCE: f64 = 0.01;
 /// … and by more in this share of the samples: at rims, where the density jumps.
@@ -163,6 +166,7 @@ where
         patches_left: 0,
         cells: Vec::new(),
         places: Vec::new(),
+        integral: 0.0,
         error: 0.0,
     };
     for (i, inside) in samples.iter_mut().enumerate() {
@@ -170,6 +174,10 @@ where
         let (sx, sy) = (1.0 / nx as f64, 1.0 / ny as f64);
         let patch = Patch { low: [x * sx, y * sy], high: [(x + 1.0) * sx, (y + 1.0) * sy], halvings: [0; 2] };
         cutter.cut(patch, inside);
+        if cutter.integral > TOO_MUCH {
+            let report = format!("the density integrates to more than {:.5}", cutter.integral);
+            return Err(TestReport::impossible(report));
+        }
     }
     Ok(Counted { tally, cells: cutter.cells, places: cutter.places, error: cutter.error })
 }
@@ -221,13 +229,17 @@ struct Cutter<F> {
     patches_left: u32,
     cells: Vec<Cell>,
     places: Vec<Patch>,
-    /// Estimated error of the sum of all integrals.
+    /// The sum of all integrals, and its estimated error.
+    integral: f64,
     error: f64,
 }
 
 impl<F: Fn(Coordinates) -> f64> Cutter<F> {
     /// Turns a box and the samples in it into one cell, or several.
     fn cut(&mut self, patch: Patch, inside: &mut [Coordinates]) {
+        if self.integral > TOO_MUCH {
+            return;
+        }
         self.patches_left = MAX_PATCHES_PER_CELL;
         let (share, _) = self.integrate(patch, inside, 0.1 * self.max_share);
         let axis = patch.coarsest_axis(self.axes);
@@ -239,6 +251,7 @@ impl<F: Fn(Coordinates) -> f64> Cutter<F> {
         } else {
             self.patches_left = MAX_PATCHES_PER_CELL;
             let (share, error) = self.integrate(patch, inside, self.tolerance(inside.len()));
+            self.integral += share;
             self.error += error;
             self.cells.push(Cell { expected: share * self.samples, observed: inside.len() as u64 });
             self.places.push(patch);
