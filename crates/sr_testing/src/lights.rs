@@ -46,11 +46,12 @@ fn environment(desc: &mut SceneDesc, image: Arc<Image>, mapping: SphereMapping) 
     desc.lights.last_mut().expect("just pushed")
 }
 
-/// A checkerboard of 2 × 2 squares over (u, v) in [0, 1]², bright at the origin and at the opposite corner.
+/// A checkerboard of 2 × 2 squares over (u, v) in [0, 1]², bright at the origin and at the opposite corner, half as
+/// bright elsewhere.
 fn checkerboard(desc: &mut SceneDesc, bright: f32) -> ColorInput {
     desc.textures.push(TextureDesc::Checkerboard {
         color0: ColorInput::Constant(Rgb::splat(bright)),
-        color1: ColorInput::Constant(Rgb::ZERO),
+        color1: ColorInput::Constant(Rgb::splat(0.5 * bright)),
         to_uv: Affine2::IDENTITY,
         span: Span::default(),
     });
@@ -106,7 +107,8 @@ fn area_lights() -> Vec<KnownScene> {
             let quarter = rectangle(center + Vec3::new(s * half.x, s * half.y, 0.0), 0.5 * half);
             lambert_irradiance(&quarter)
         });
-        floor_under(name, 5.0 * (bright[0] + bright[1]), 0.0, |desc| {
+        let all = lambert_irradiance(&rectangle(center, half));
+        floor_under(name, 2.5 * (all + bright[0] + bright[1]), 0.0, |desc| {
             checkered_light(desc, center, half, cuts, 5.0);
         })
     };
