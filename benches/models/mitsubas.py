@@ -40,6 +40,23 @@ MODELS: dict[str, dict[str, Any]] = {
         "int_ior": 1.5,
         "ext_ior": 1.0,
     },
+    "principled": {"type": "principled", "base_color": HALF, "metallic": 1.0, "roughness": 0.5},
+    "principled, all lobes": {
+        "type": "principled",
+        "base_color": HALF,
+        "metallic": 0.3,
+        "roughness": 0.5,
+        "spec_trans": 0.5,
+        "sheen": 0.5,
+        "clearcoat": 0.5,
+    },
+    "principledthin": {"type": "principledthin", "base_color": HALF, "spec_trans": 0.5},
+    "blendbsdf": {
+        "type": "blendbsdf",
+        "weight": 0.6,
+        "first": {"type": "diffuse", "reflectance": HALF},
+        "second": {"type": "roughconductor", "alpha": 0.3, "distribution": "ggx", "material": "Cu"},
+    },
 }
 
 

@@ -9,8 +9,10 @@ use std::time::Instant;
 
 use glam::{Vec2, Vec3};
 use sr_bsdf::{
-    AnyBsdf, Bsdf, Conductor, Dielectric, Diffuse, Mask, Microfacet, MicrofacetKind, Plastic, Rgb,
-    RoughConductor, RoughDielectric, RoughPlastic, RoughPlasticTables, SmoothCoat, ThinDielectric,
+    AnyBsdf, Blend, Bsdf, Conductor, Dielectric, Diffuse, DiffuseTransmission, Eon, Mask, MetallicRoughness,
+    MetallicRoughnessInputs, Microfacet, MicrofacetKind, OrenNayar, Part, Plastic, Principled,
+    PrincipledInputs, PrincipledThin, PrincipledThinInputs, Rgb, RoughConductor, RoughDielectric,
+    RoughPlastic, RoughPlasticTables, SmoothCoat, ThinDielectric,
 };
 
 /// η and k of copper at 630, 532 and 465 nm (Johnson & Christy 1972), rounded.
@@ -48,6 +50,11 @@ fn models(coat: &RoughPlasticTables) -> Vec<(&'static str, AnyBsdf<'_>)> {
     let half = Rgb::splat(0.5);
     let ggx = Microfacet::isotropic(MicrofacetKind::Ggx, 0.3);
     let beckmann = Microfacet::isotropic(MicrofacetKind::Beckmann, 0.3);
+    let metal = PrincipledInputs { base_color: half, metallic: 1.0, roughness: 0.5, ..Default::default() };
+    let all = PrincipledInputs { metallic: 0.3, spec_trans: 0.5, sheen: 0.5, clearcoat: 0.5, ..metal };
+    let thin = PrincipledThinInputs { base_color: half, spec_trans: 0.5, ..Default::default() };
+    let copper = RoughConductor::new(ggx, Some(COPPER), Rgb::ONE);
+    let parts = vec![Part::new(0.4, [], Diffuse::new(half).into()), Part::new(0.6, [], copper.into())];
     vec![
         ("diffuse", Diffuse::new(half).into()),
         ("mask", AnyBsdf::Masked(Mask::new(0.5, Diffuse::new(half).into()))),
@@ -60,6 +67,14 @@ fn models(coat: &RoughPlasticTables) -> Vec<(&'static str, AnyBsdf<'_>)> {
         ("roughconductor, beckmann", RoughConductor::new(beckmann, Some(COPPER), Rgb::ONE).into()),
         ("plastic", Plastic::new(SmoothCoat::new(1.5), half, Rgb::ONE, false).into()),
         ("roughplastic, ggx", RoughPlastic::new(coat, half, Rgb::ONE, false).into()),
+        ("roughdiffuse", OrenNayar::new(half, 0.5).into()),
+        ("eon", Eon::new(half, 0.5).into()),
+        ("diffusetransmission", DiffuseTransmission::new(half, half).into()),
+        ("principled", Principled::new(metal).into()),
+        ("principled, all lobes", Principled::new(all).into()),
+        ("principledthin", PrincipledThin::new(thin).into()),
+        ("metallicroughness", MetallicRoughness::new(MetallicRoughnessInputs::default()).into()),
+        ("blendbsdf", AnyBsdf::Blended(Blend::new(parts, false))),
     ]
 }
 

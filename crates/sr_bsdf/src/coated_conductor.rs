@@ -7,7 +7,7 @@ use sr_sampling::warp::CosineHemisphere;
 use crate::albedo_table::{AlbedoTable, mean_of_diffuse};
 use crate::conductor::Metal;
 use crate::interface::{dielectric, reflect, reflect_about};
-use crate::rough_coat::mean_over_visible_normals;
+use crate::rough_coat::mean_where_it_jumps;
 use crate::{Bsdf, BsdfSample, Lobes, Microfacet, MicrofacetKind, Rgb, RoughConductor};
 
 /// What is the same at every point of a coated metal; made once per material.
@@ -37,7 +37,8 @@ impl CoatedConductorTables {
         };
         let single = AlbedoTable::new(|cos| {
             let inside = dielectric(cos, eta).cos_t;
-            let through = mean_over_visible_normals(&base, inside, |wo, m| {
+            // Where light that leaves grazes a rough coat, some passes; beyond that, reflection is total.
+            let through = mean_where_it_jumps(&base, inside, |wo, m| {
                 let wi = reflect_about(wo, m);
                 match leave(wi, eta) {
                     Some(out) if wi.z > 0.0 => base.g1(wi) * reflected.left(out.z),

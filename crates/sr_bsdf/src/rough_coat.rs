@@ -148,19 +148,34 @@ fn node(i: usize) -> f32 {
 /// The midpoint rule in t with u = 3t² − 2t³, whose weight 6t(1 − t) vanishes where the normals' tails,
 /// at the edges of the unit square, are singular.
 pub(crate) fn mean_over_visible_normals(d: &Microfacet, cos: f32, f: impl Fn(Vec3, Vec3) -> f32) -> f32 {
+    let middle = |i: usize| (i as f32 + 0.5) / QUADRATURE as f32;
+    let points = (0..QUADRATURE).flat_map(|i| (0..QUADRATURE).map(move |j| [middle(i), middle(j)]));
+    weighted_mean(d, cos, points, f)
+}
+
+/// The same where `f` jumps, so that a grid would be a thousandth off and more: at a Fibonacci lattice of 17711 points
+/// (Zaremba 1966), whose rows are not along any axis.
+pub(crate) fn mean_where_it_jumps(d: &Microfacet, cos: f32, f: impl Fn(Vec3, Vec3) -> f32) -> f32 {
+    const POINTS: u32 = 17_711;
+    const TURN: u32 = 10_946;
+    let shared = |i: u32| (i as f32 + 0.5) / POINTS as f32;
+    let points = (0..POINTS).map(|i| [shared(i), shared(i * TURN % POINTS)]);
+    weighted_mean(d, cos, points, f)
+}
+
+/// The mean over normals that come from t in the unit square, evenly spread.
+fn weighted_mean(
+    d: &Microfacet,
+    cos: f32,
+    points: impl Iterator<Item = [f32; 2]>,
+    f: impl Fn(Vec3, Vec3) -> f32,
+) -> f32 {
     let wo = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
-    let rule = (0..QUADRATURE).map(|i| {
-        let t = (i as f32 + 0.5) / QUADRATURE as f32;
-        (t * t * (3.0 - 2.0 * t), t * (1.0 - t))
+    let (sum, total) = points.fold((0.0, 0.0), |(sum, total), t| {
+        let u = t.map(|t| t * t * (3.0 - 2.0 * t));
+        let weight = f64::from(t.map(|t| t * (1.0 - t)).iter().product::<f32>());
+        (sum + weight * f64::from(f(wo, d.sample_visible(wo, u.into()))), total + weight)
     });
-    let (mut sum, mut total) = (0.0, 0.0);
-    for (x, weight_x) in rule.clone() {
-        for (y, weight_y) in rule.clone() {
-            let weight = f64::from(weight_x * weight_y);
-            sum += weight * f64::from(f(wo, d.sample_visible(wo, Vec2::new(x, y))));
-            total += weight;
-        }
-    }
     (sum / total) as f32
 }
 

@@ -27,17 +27,11 @@ pub fn subjects() -> Vec<Subject> {
         for wo in [Vec3::Z, Vec3::new(0.6, 0.0, 0.8), Vec3::new(0.0, 0.98, 0.2)].map(Vec3::normalize) {
             let name = name.strip_prefix("white ").unwrap_or(&name);
             let subject = Subject::new(Group::Bsdf, format!("{name}, white, from {wo}"));
-            let slack = furnace_slack(name);
-            let check = move |seed| checks::white_furnace(&bsdf, wo, slack, seed);
+            let check = move |seed| checks::white_furnace(&bsdf, wo, 1e-3, seed);
             all.push(subject.check("white furnace", check));
         }
     }
     all
-}
-
-/// How much of the light a lossless model may lose: 0.1 %, and 1 % below a rough coat, whose bounces are tabulated.
-fn furnace_slack(name: &str) -> f64 {
-    if name.starts_with("roughly coated") { 1e-2 } else { 1e-3 }
 }
 
 /// Every check on a model, seen from a direction.
