@@ -25,7 +25,9 @@ def mitsubas(path: Path, spp: int) -> Render | str:
     import mitsuba as mi
 
     try:
-        scene = mi.load_file(str(path))
+        # Optimised, Mitsuba 3.9.1 joins shapes of the same material and forgets the extent of all but one: light from a
+        # constant sky then passes through what is far away.
+        scene = mi.load_file(str(path), optimize=False)
     except RuntimeError as error:
         return str(error).strip().splitlines()[-1]
     each = max(spp // REPLICATES, 4)

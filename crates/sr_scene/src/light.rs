@@ -10,7 +10,7 @@ use crate::{ColorInput, FovAxis, IntensityProfile, Rgb, TextureId, diagnostic::S
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SphereMapping {
     /// Latitude and longitude: a direction (x, y, z) is at u = atan2(x, −z) / 2π (mod 1), v = acos(y) / π, v = 0 being
-    /// the top row.
+    /// the top row, all of which is at the pole: the middles of h rows are at v = k / (h − 1).
     LatLong,
     /// An octahedron unfolded into a square so that areas are kept (Clarberg 2008, "Fast Equal-Area Mapping of the
     /// (Hemi)Sphere Using SIMD"), as pbrt-v4 stores environments: +Z in the middle, −Z at the corners, +X to the right,

@@ -62,12 +62,12 @@ impl<'a> Lowering<'a, '_> {
         id
     }
 
-    /// What a shape without a BSDF is made of.
+    /// What stands in for a BSDF that cannot be had.
     pub(super) fn default_material(&mut self, node: &Node) -> MaterialId {
         self.add_material(diffuse(GREY), node)
     }
 
-    fn add_material(&mut self, desc: MaterialDesc, node: &Node) -> MaterialId {
+    pub(super) fn add_material(&mut self, desc: MaterialDesc, node: &Node) -> MaterialId {
         self.materials.push(desc);
         self.material_spans.push(node.span.clone());
         MaterialId(self.materials.len() as u32 - 1)
@@ -363,6 +363,6 @@ enum Lowered {
     Same(MaterialId),
 }
 
-fn diffuse(color: Rgb) -> MaterialDesc {
+pub(super) fn diffuse(color: Rgb) -> MaterialDesc {
     MaterialDesc::Diffuse { reflectance: ColorInput::Constant(color) }
 }

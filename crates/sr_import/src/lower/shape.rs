@@ -7,6 +7,7 @@ use sr_scene::{Diagnostic, Emission, Geometry, Rgb, ShapeDesc};
 use super::Lowering;
 use super::color::Role;
 use super::jobs::{MeshSource, PendingMesh, ShapeSlot};
+use super::material::{GREY, diffuse};
 use crate::files;
 use crate::mesh::{Format, Placement, Scheme, Subdivision, primitives};
 use crate::node::{Node, Value};
@@ -71,15 +72,15 @@ impl<'a> Lowering<'a, '_> {
         };
         props.ignore(&["silhouette_sampling_weight"]);
         let material = match self.nested(&mut props, "bsdf")[..] {
-            [] => self.default_material(node),
-            [one] => self.material(one),
+            [] => None,
+            [one] => Some(self.material(one)),
             [first, second, ..] => {
                 let message = format!("{} has more than one BSDF", node.title());
                 self.d.push(
                     Diagnostic::warning("mitsuba::wrong-nesting", &second.span, message)
                         .consequence("the first one is used"),
                 );
-                self.material(first)
+                Some(self.material(first))
             }
         };
         let mut emission = self.emission(&mut props);
@@ -104,6 +105,9 @@ impl<'a> Lowering<'a, '_> {
             }
         }
         props.finish(self.d);
+        // As in Mitsuba, a light that is given no material reflects nothing.
+        let by_default = if emission.is_some() { Rgb::ZERO } else { GREY };
+        let material = material.unwrap_or_else(|| self.add_material(diffuse(by_default), node));
         let (geometry, pending) = match form {
             Form::Ready(geometry) => (geometry, None),
             Form::Mesh(source, placement) => (Geometry::Mesh(Arc::default()), Some((source, placement))),

@@ -1,7 +1,8 @@
 //! Images of all directions: where in an image a direction is, and what is there.
 //!
 //! In: unit vectors in the image's own space, or points (u, v) of the image, v = 0 the top row. Out: the other of the
-//! two, and radiance, bilinear between texel centres across all seams. What light cannot be (negative numbers, NaN) is
+//! two, and radiance, bilinear between texel centres across all seams. The centres of a latitude–longitude image's first and
+//! last row are at the poles, as in Mitsuba. What light cannot be (negative numbers, NaN) is
 //! black here; [`sr_scene`] has reported it.
 
 use std::f32::consts::{FRAC_PI_4, PI, TAU};
@@ -42,7 +43,14 @@ impl SphereImage {
     /// The value at a point of the image.
     #[inline]
     pub fn at(&self, uv: Vec2) -> Rgb {
-        let at = uv * Vec2::new(self.image.width as f32, self.image.height as f32) - 0.5;
+        let (width, height) = (self.image.width as f32, self.image.height as f32);
+        let at = Vec2::new(
+            uv.x * width - 0.5,
+            match self.mapping {
+                SphereMapping::LatLong => uv.y * (height - 1.0),
+                SphereMapping::EqualAreaOctahedral => uv.y * height - 0.5,
+            },
+        );
         let (x, y) = (to_cell(at.x), to_cell(at.y));
         let t = at - Vec2::new(x as f32, y as f32);
         let color = match self.mapping {
@@ -91,13 +99,36 @@ impl SphereImage {
     /// The mean luminance over a texel's cell of what [`SphereImage::at`] gives: never 0 where it shines.
     pub fn cell_luminance(&self, x: u32, y: u32) -> f32 {
         let mut sum = 0.0;
-        for (dy, wy) in [(-1, 0.125), (0, 0.75), (1, 0.125)] {
+        for (dy, wy) in [-1, 0, 1].map(|dy| (dy, self.row_share(y, dy))) {
             for (dx, wx) in [(-1, 0.125), (0, 0.75), (1, 0.125)] {
                 let color = possible(self.wrapped(x as i32 + dx, y as i32 + dy));
                 sum += wx * wy * luminance(color);
             }
         }
         sum
+    }
+
+    /// The mean weight of row `y` + `dy` in the cell of row `y`.
+    fn row_share(&self, y: u32, dy: i32) -> f32 {
+        // Cells are of equal height, and the middles of the first and the last row are at the poles.
+        let (from, to) = match self.mapping {
+            SphereMapping::LatLong => {
+                let height = f64::from(self.image.height);
+                let row = |y: f64| y * (height - 1.0) / height;
+                (row(f64::from(y)), row(f64::from(y) + 1.0))
+            }
+            SphereMapping::EqualAreaOctahedral => (f64::from(y) - 0.5, f64::from(y) + 0.5),
+        };
+        // ∫ of a row's weight, a tent over its neighbours' middles.
+        let up_to = |x: f64| {
+            let x = (x - f64::from(y) - f64::from(dy)).clamp(-1.0, 1.0);
+            if x < 0.0 { 0.5 * (1.0 + x) * (1.0 + x) } else { 1.0 - 0.5 * (1.0 - x) * (1.0 - x) }
+        };
+        if to > from {
+            ((up_to(to) - up_to(from)) / (to - from)) as f32
+        } else {
+            f32::from(u8::from(dy == 0))
+        }
     }
 
     /// The value of a texel.
@@ -271,12 +302,31 @@ mod tests {
         let f = |w: Vec3| 2.0 + w.x + 0.5 * w.y - 0.7 * w.z;
         for mapping in [SphereMapping::LatLong, SphereMapping::EqualAreaOctahedral] {
             let (n, blank) = (64_u32, image(64, 64, vec![0.0; 4096], mapping));
-            let value =
-                |i: u32| f(blank.direction((Vec2::new((i % n) as f32, (i / n) as f32) + 0.5) / n as f32));
+            let value = |i: u32| {
+                let (x, y) = ((i % n) as f32 + 0.5, (i / n) as f32);
+                let v = match mapping {
+                    SphereMapping::LatLong => y / (n - 1) as f32,
+                    SphereMapping::EqualAreaOctahedral => (y + 0.5) / n as f32,
+                };
+                f(blank.direction(Vec2::new(x / n as f32, v)))
+            };
             let map = image(n, n, (0..n * n).map(value).collect(), mapping);
             for w in directions() {
                 assert!((map.at(map.uv_of(w)).x - f(w)).abs() < 0.05, "{mapping:?}, {w}");
             }
+        }
+    }
+
+    #[test]
+    fn rows_reach_the_poles() {
+        let map = image(1, 3, vec![1.0, 2.0, 4.0], SphereMapping::LatLong);
+        for (v, value) in [(0.0, 1.0), (0.25, 1.5), (0.5, 2.0), (0.75, 3.0), (1.0, 4.0)] {
+            assert_eq!(map.at(Vec2::new(0.3, v)).x, value);
+        }
+        // Means over thirds of the height: (0 … ⅔), (⅔ … 4⁄3), (4⁄3 … 2) in rows.
+        let means = [1.0 + 1.0 / 3.0, 2.0 + 1.0 / 12.0, 4.0 - 2.0 / 3.0];
+        for (y, mean) in (0..).zip(means) {
+            assert!((map.cell_luminance(0, y) - mean).abs() < 1e-6, "{}", map.cell_luminance(0, y));
         }
     }
 
