@@ -1,5 +1,9 @@
 //! Nanoseconds of `sample`, `eval` and `pdf`, for each model seen along the normal, at 45° and at 80°.
 //!
+//! As the path tracer asks them: many vertices in a row, columns of numbers in and out, with the best instructions that the
+//! processor has. What happens to a vertex does not depend on others, and nothing of a vertex is known beforehand, not even
+//! that all look from the same angle.
+//!
 //! `cargo bench -p sr_bsdf --bench models`; a line for each: model, angle, function, nanoseconds. `benches/models.py` puts
 //! them beside Mitsuba's.
 
@@ -9,94 +13,217 @@ use std::time::Instant;
 
 use glam::{Vec2, Vec3};
 use sr_bsdf::{
-    AnyBsdf, Blend, Bsdf, Conductor, Dielectric, Diffuse, DiffuseTransmission, Eon, Mask, MetallicRoughness,
-    MetallicRoughnessInputs, Microfacet, MicrofacetKind, OrenNayar, Part, Plastic, Principled,
-    PrincipledInputs, PrincipledThin, PrincipledThinInputs, Rgb, RoughConductor, RoughDielectric,
+    AnyModel, Beckmann, Blend, Bsdf, Conductor, Dielectric, Diffuse, DiffuseTransmission, Eon, Ggx, Mask,
+    MetallicRoughness, MetallicRoughnessInputs, Microfacet, MicrofacetKind, OrenNayar, Part, Plastic,
+    Principled, PrincipledInputs, PrincipledThin, PrincipledThinInputs, Rgb, RoughConductor, RoughDielectric,
     RoughPlastic, RoughPlasticTables, SmoothCoat, ThinDielectric,
 };
+use sr_sampling::isa::{Isa, Work};
 
 /// η and k of copper at 630, 532 and 465 nm (Johnson & Christy 1972), rounded.
 const COPPER: (Rgb, Rgb) = (Rgb::new(0.27, 1.09, 1.18), Rgb::new(3.41, 2.58, 2.40));
 
 const ANGLES: [f32; 3] = [0.0, 45.0, 80.0];
 
-/// Directions and uniforms are as many, so that no branch is learned by heart.
-const INPUTS: usize = 1024;
-/// The fastest of so many passes over the inputs counts: others were disturbed.
+/// So many that no branch is learned by heart.
+const VERTICES: usize = 1024;
+/// The fastest of so many passes over the vertices counts: others were disturbed.
 const PASSES: usize = 200;
 
 fn main() {
-    let mut out = std::io::stdout();
-    let coat = RoughPlasticTables::new(MicrofacetKind::Ggx, 0.3, 1.5);
-    for (name, bsdf) in models(&coat) {
-        for angle in ANGLES {
-            let wo = Vec3::new(angle.to_radians().sin(), 0.0, angle.to_radians().cos());
-            let lobes: Vec<f32> = (0..INPUTS).map(|i| (i as f32 * 0.754_877_7) % 1.0).collect();
-            let points: Vec<Vec2> = (0..INPUTS).map(uniforms).collect();
-            let directions: Vec<Vec3> = points.iter().map(|&u| sphere(u)).collect();
-            let sample = fastest(|i| bsdf.sample(wo, lobes[i], points[i]).map_or(0.0, |s| s.pdf));
-            let eval = fastest(|i| bsdf.eval(wo, directions[i]).x);
-            let pdf = fastest(|i| bsdf.pdf(wo, directions[i]));
-            for (function, nanoseconds) in [("sample", sample), ("eval", eval), ("pdf", pdf)] {
-                // A broken pipe is the reader's wish.
-                let _ = writeln!(out, "{name}\t{angle}\t{function}\t{nanoseconds:.2}");
-            }
-        }
-    }
-}
-
-/// The names are those of Mitsuba's plugins.
-fn models(coat: &RoughPlasticTables) -> Vec<(&'static str, AnyBsdf<'_>)> {
     let half = Rgb::splat(0.5);
-    let ggx = Microfacet::isotropic(MicrofacetKind::Ggx, 0.3);
-    let beckmann = Microfacet::isotropic(MicrofacetKind::Beckmann, 0.3);
+    let ggx = Microfacet::isotropic(Ggx, 0.3);
+    let beckmann = Microfacet::isotropic(Beckmann, 0.3);
+    let coat = RoughPlasticTables::new(MicrofacetKind::Ggx, 0.3, 1.5);
     let metal = PrincipledInputs { base_color: half, metallic: 1.0, roughness: 0.5, ..Default::default() };
     let all = PrincipledInputs { metallic: 0.3, spec_trans: 0.5, sheen: 0.5, clearcoat: 0.5, ..metal };
     let thin = PrincipledThinInputs { base_color: half, spec_trans: 0.5, ..Default::default() };
     let copper = RoughConductor::new(ggx, Some(COPPER), Rgb::ONE);
-    let parts = vec![Part::new(0.4, [], Diffuse::new(half).into()), Part::new(0.6, [], copper.into())];
-    vec![
-        ("diffuse", Diffuse::new(half).into()),
-        ("mask", AnyBsdf::Masked(Mask::new(0.5, Diffuse::new(half).into()))),
-        ("dielectric", Dielectric::new(1.5, Rgb::ONE, Rgb::ONE).into()),
-        ("thindielectric", ThinDielectric::new(1.5, Rgb::ONE, Rgb::ONE).into()),
-        ("roughdielectric, ggx", RoughDielectric::new(ggx, 1.5, Rgb::ONE, Rgb::ONE).into()),
-        ("roughdielectric, beckmann", RoughDielectric::new(beckmann, 1.5, Rgb::ONE, Rgb::ONE).into()),
-        ("conductor", Conductor::new(Some(COPPER), Rgb::ONE).into()),
-        ("roughconductor, ggx", RoughConductor::new(ggx, Some(COPPER), Rgb::ONE).into()),
-        ("roughconductor, beckmann", RoughConductor::new(beckmann, Some(COPPER), Rgb::ONE).into()),
-        ("plastic", Plastic::new(SmoothCoat::new(1.5), half, Rgb::ONE, false).into()),
-        ("roughplastic, ggx", RoughPlastic::new(coat, half, Rgb::ONE, false).into()),
-        ("roughdiffuse", OrenNayar::new(half, 0.5).into()),
-        ("eon", Eon::new(half, 0.5).into()),
-        ("diffusetransmission", DiffuseTransmission::new(half, half).into()),
-        ("principled", Principled::new(metal).into()),
-        ("principled, all lobes", Principled::new(all).into()),
-        ("principledthin", PrincipledThin::new(thin).into()),
-        ("metallicroughness", MetallicRoughness::new(MetallicRoughnessInputs::default()).into()),
-        ("blendbsdf", AnyBsdf::Blended(Blend::new(parts, false))),
-    ]
+    let of_any: AnyModel = copper.of_any_shape().into();
+    let parts = [Part::new(0.4, [], Diffuse::new(half).into()), Part::new(0.6, [], of_any)];
+
+    // The names are those of Mitsuba's plugins.
+    measure("diffuse", Plain(Diffuse::new(half)));
+    measure("mask", Plain(Mask::new(0.5, Diffuse::new(half))));
+    measure("dielectric", Plain(Dielectric::new(1.5, Rgb::ONE, Rgb::ONE)));
+    measure("thindielectric", Plain(ThinDielectric::new(1.5, Rgb::ONE, Rgb::ONE)));
+    measure("roughdielectric, ggx", Plain(RoughDielectric::new(ggx, 1.5, Rgb::ONE, Rgb::ONE)));
+    measure("roughdielectric, beckmann", Plain(RoughDielectric::new(beckmann, 1.5, Rgb::ONE, Rgb::ONE)));
+    measure("conductor", Plain(Conductor::new(Some(COPPER), Rgb::ONE)));
+    measure("roughconductor, ggx", Plain(copper));
+    measure("roughconductor, beckmann", Plain(RoughConductor::new(beckmann, Some(COPPER), Rgb::ONE)));
+    measure("plastic", Plain(Plastic::new(SmoothCoat::new(1.5), half, Rgb::ONE, false)));
+    measure("roughplastic, ggx", Coated { coat: &coat, distribution: ggx, color: half });
+    measure("roughdiffuse", Plain(OrenNayar::new(half, 0.5)));
+    measure("eon", Plain(Eon::new(half, 0.5)));
+    measure("diffusetransmission", Plain(DiffuseTransmission::new(half, half)));
+    measure("principled", Plain(Principled::new(metal)));
+    measure("principled, all lobes", Plain(Principled::new(all)));
+    measure("principledthin", Plain(PrincipledThin::new(thin)));
+    measure("metallicroughness", Plain(MetallicRoughness::new(MetallicRoughnessInputs::default())));
+    measure("blendbsdf", Plain(Blend::new(parts, false)));
 }
 
-/// A point of a lattice.
-fn uniforms(i: usize) -> Vec2 {
-    Vec2::new((i as f32 + 0.5) / INPUTS as f32, (i as f32 * 0.618_034) % 1.0)
+/// How a model is made where many vertices are served. Tables are made anew there, so that compilers know that what is
+/// written is not in them.
+trait Recipe: Copy {
+    type Tables;
+    type Model<'t>: Bsdf;
+    fn tables(self) -> Self::Tables;
+    fn model(self, tables: &Self::Tables) -> Self::Model<'_>;
 }
 
-fn sphere(u: Vec2) -> Vec3 {
-    let z = 1.0 - 2.0 * u.x;
-    let (sin, cos) = (std::f32::consts::TAU * u.y).sin_cos();
-    (Vec3::new(cos, sin, 0.0) * (1.0 - z * z).max(0.0).sqrt()).with_z(z)
+#[derive(Clone, Copy)]
+struct Plain<B>(B);
+
+impl<B: Bsdf + Copy> Recipe for Plain<B> {
+    type Tables = ();
+    type Model<'t> = B;
+
+    #[inline(always)]
+    fn tables(self) {}
+
+    #[inline(always)]
+    fn model(self, (): &()) -> B {
+        self.0
+    }
 }
 
-/// Nanoseconds of a call.
-fn fastest(call: impl Fn(usize) -> f32) -> f64 {
-    let pass = || {
-        let began = Instant::now();
-        for i in 0..INPUTS {
-            black_box(call(black_box(i)));
+#[derive(Clone, Copy)]
+struct Coated<'c> {
+    coat: &'c RoughPlasticTables,
+    distribution: Microfacet<Ggx>,
+    color: Rgb,
+}
+
+impl Recipe for Coated<'_> {
+    type Tables = RoughPlasticTables;
+    type Model<'t> = RoughPlastic<'t, Ggx>;
+
+    #[inline(always)]
+    fn tables(self) -> RoughPlasticTables {
+        self.coat.rebuilt()
+    }
+
+    #[inline(always)]
+    fn model(self, tables: &RoughPlasticTables) -> RoughPlastic<'_, Ggx> {
+        RoughPlastic::of_distribution(self.distribution, tables, self.color, Rgb::ONE, false)
+    }
+}
+
+/// Prints a line for each angle and function.
+fn measure<R: Recipe>(name: &str, recipe: R) {
+    let mut out = std::io::stdout();
+    for angle in ANGLES {
+        let mut vertices = Vertices::seen_from(angle.to_radians());
+        for function in [Function::Sample, Function::Eval, Function::Pdf] {
+            let pass = |vertices: &mut Vertices| {
+                let began = Instant::now();
+                Isa::detect().run(Pass {
+                    recipe: black_box(recipe),
+                    function,
+                    vertices: black_box(vertices),
+                });
+                began.elapsed().as_secs_f64() * 1e9 / VERTICES as f64
+            };
+            let fastest = (0..PASSES).map(|_| pass(&mut vertices)).fold(f64::INFINITY, f64::min);
+            let function = format!("{function:?}").to_lowercase();
+            // A broken pipe is the reader's wish.
+            let _ = writeln!(out, "{name}\t{angle}\t{function}\t{fastest:.2}");
         }
-        began.elapsed().as_secs_f64() * 1e9 / INPUTS as f64
-    };
-    (0..PASSES).map(|_| pass()).fold(f64::INFINITY, f64::min)
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Function {
+    Sample,
+    Eval,
+    Pdf,
+}
+
+type Column = [f32; VERTICES];
+
+/// A column for each number that goes in or comes out.
+struct Vertices {
+    wo: [Column; 3],
+    wi: [Column; 3],
+    u_lobe: Column,
+    u: [Column; 2],
+    sampled: [Column; 3],
+    value: [Column; 3],
+    pdf: Column,
+}
+
+impl Vertices {
+    /// All from an angle with the normal, lit from everywhere.
+    fn seen_from(angle: f32) -> Box<Self> {
+        let mut vertices = Box::new(Self {
+            wo: [[angle.sin(); VERTICES], [0.0; VERTICES], [angle.cos(); VERTICES]],
+            wi: [[0.0; VERTICES]; 3],
+            u_lobe: [0.0; VERTICES],
+            u: [[0.0; VERTICES]; 2],
+            sampled: [[0.0; VERTICES]; 3],
+            value: [[0.0; VERTICES]; 3],
+            pdf: [0.0; VERTICES],
+        });
+        for i in 0..VERTICES {
+            let u = Vec2::new((i as f32 + 0.5) / VERTICES as f32, (i as f32 * 0.618_034) % 1.0);
+            let z = 1.0 - 2.0 * u.x;
+            let (sin, cos) = (std::f32::consts::TAU * u.y).sin_cos();
+            set(&mut vertices.wi, i, (Vec3::new(cos, sin, 0.0) * (1.0 - z * z).max(0.0).sqrt()).with_z(z));
+            (vertices.u[0][i], vertices.u[1][i]) = (u.x, u.y);
+            vertices.u_lobe[i] = (i as f32 * 0.754_877_7) % 1.0;
+        }
+        vertices
+    }
+}
+
+#[inline(always)]
+fn get(columns: &[Column; 3], i: usize) -> Vec3 {
+    Vec3::new(columns[0][i], columns[1][i], columns[2][i])
+}
+
+#[inline(always)]
+fn set(columns: &mut [Column; 3], i: usize, value: Vec3) {
+    (columns[0][i], columns[1][i], columns[2][i]) = (value.x, value.y, value.z);
+}
+
+/// A function of a model, asked about all vertices.
+struct Pass<'v, R> {
+    recipe: R,
+    function: Function,
+    vertices: &'v mut Vertices,
+}
+
+impl<R: Recipe> Work for Pass<'_, R> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { recipe, function, vertices: v } = self;
+        let tables = recipe.tables();
+        let bsdf = recipe.model(&tables);
+        match function {
+            Function::Sample => {
+                for i in 0..VERTICES {
+                    let s = bsdf.sample(get(&v.wo, i), v.u_lobe[i], Vec2::new(v.u[0][i], v.u[1][i]));
+                    let (wi, weight, pdf) =
+                        s.map_or((Vec3::ZERO, Rgb::ZERO, 0.0), |s| (s.wi, s.weight, s.pdf));
+                    set(&mut v.sampled, i, wi);
+                    set(&mut v.value, i, weight);
+                    v.pdf[i] = pdf;
+                }
+            }
+            Function::Eval => {
+                for i in 0..VERTICES {
+                    set(&mut v.value, i, bsdf.eval(get(&v.wo, i), get(&v.wi, i)));
+                }
+            }
+            Function::Pdf => {
+                for i in 0..VERTICES {
+                    v.pdf[i] = bsdf.pdf(get(&v.wo, i), get(&v.wi, i));
+                }
+            }
+        }
+    }
 }

@@ -2,7 +2,7 @@
 //!
 //! In: a microfacet distribution and an index. Out: numbers that are the same at every point of the material.
 
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 
 use crate::interface::{dielectric, reflect_about, refract_about};
 use crate::{Microfacet, MicrofacetKind};
