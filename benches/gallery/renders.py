@@ -25,8 +25,8 @@ def mitsubas(path: Path, spp: int) -> Render | str:
     import mitsuba as mi
 
     try:
-        # Optimised, Mitsuba 3.9.1 joins shapes of the same material and forgets the extent of all but one: light from a
-        # constant sky then passes through what is far away.
+        # Optimised, Mitsuba 3.9.1 joins shapes of the same material and forgets the extent of all but one:
+        # light from a constant sky then passes through what is far away.
         scene = mi.load_file(str(path), optimize=False)
     except RuntimeError as error:
         return str(error).strip().splitlines()[-1]
