@@ -339,9 +339,9 @@ fn skies() -> Vec<KnownScene> {
         floor_under("floor under a constant sky", pi * 3.0, 0.0, |desc| {
             desc.lights.push(LightDesc::Constant { radiance: Rgb::splat(3.0), span: Span::default() });
         }),
-        // The rows are centred at θ = π/4 and 3π/4 and L is linear in θ between them. With the pole
-        // turned to the floor's normal: E = 2π ∫ L(θ) cos θ sin θ dθ over [0, π/2].
-        floor_under("floor under a graded sky", graded_sky_irradiance(1.0, 0.25), 0.0, |desc| {
+        // The rows are at the poles, and L is linear in θ between them. With the pole turned to the floor's normal:
+        // E = 2π ∫ L(θ) cos θ sin θ dθ over [0, π/2], which is π (3 + ¼) / 4 for 1 above and ¼ below.
+        floor_under("floor under a graded sky", pi * 3.25 / 4.0, 0.0, |desc| {
             desc.images.push(Arc::new(environment([1.0, 1.0, 0.25, 0.25])));
             desc.lights.push(LightDesc::Environment {
                 image: 0,
@@ -380,14 +380,6 @@ fn skies() -> Vec<KnownScene> {
             });
         }),
     ]
-}
-
-/// E = 2π ∫ L cos θ sin θ dθ over θ in [0, π/2], L being `top` up to π/4, then falling linearly so as to
-/// reach `bottom` at 3π/4. By parts: ∫ (θ − π/4) sin 2θ dθ over [π/4, π/2] is π/8 − 1/4.
-fn graded_sky_irradiance(top: f64, bottom: f64) -> f64 {
-    let pi = std::f64::consts::PI;
-    let slope = (bottom - top) / (0.5 * pi);
-    pi * (top + slope * (pi / 8.0 - 0.25))
 }
 
 /// A light seen in a perfect mirror shows its own radiance.
