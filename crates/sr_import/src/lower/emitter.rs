@@ -40,6 +40,13 @@ impl<'a> Lowering<'a, '_> {
             }
             "envmap" => self.environment(node, &mut props),
             "point" => {
+                if props.has("position") && props.has("to_world") {
+                    let message = format!("{} has both \"position\" and \"to_world\"", node.title());
+                    self.d.push(
+                        Diagnostic::warning("mitsuba::conflict", &node.span, message)
+                            .consequence("\"position\" is used, as it is"),
+                    );
+                }
                 let to_world = props.transform("to_world", self.d);
                 let position = props.vector("position", self.d);
                 let position = position.unwrap_or_else(|| to_world.transform_point3(DVec3::ZERO)).as_vec3();

@@ -172,6 +172,10 @@ impl<'a> Lowering<'a, '_> {
             "bumpmap" => return self.bump_map(node, props),
             "normalmap" => {
                 let tilting = self.tilting(props);
+                if !props.has("normalmap") {
+                    props.use_all();
+                    return self.wrong_nesting(node, "a texture named normalmap", 0);
+                }
                 let normal = self.factor(props, "normalmap", Rgb::new(0.5, 0.5, 1.0));
                 match self.nested(props, "bsdf")[..] {
                     [inner] => MaterialDesc::NormalMap { normal, tilting, inner: self.material(inner) },

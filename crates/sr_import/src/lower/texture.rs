@@ -67,8 +67,14 @@ impl<'a> Lowering<'a, '_> {
                 // First: what is left is scaled.
                 let factor = self.color(props, "scale", Rgb::ONE, Role::Factor);
                 let input = match self.nested(props, "texture")[..] {
-                    [] => self.color(props, "texture", Rgb::ONE, role),
-                    [input, ..] => self.texture(input, role),
+                    [] if props.has("texture") => self.color(props, "texture", Rgb::ONE, role),
+                    [input] => self.texture(input, role),
+                    ref others => {
+                        let message =
+                            format!("{} needs one texture inside it, not {}", node.title(), others.len());
+                        self.d.push(Diagnostic::error("mitsuba::wrong-nesting", &node.span, message));
+                        ColorInput::Constant(STAND_IN)
+                    }
                 };
                 self.add_texture(TextureDesc::Scale { input, factor, span: node.span.clone() })
             }

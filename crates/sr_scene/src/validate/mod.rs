@@ -58,6 +58,9 @@ pub fn validate(scene: &SceneDesc, span_of: impl Fn(MaterialId) -> Span) -> Vec<
     check.found
 }
 
+/// The largest number in a color: its square, and that of a sum of many, is still one in single precision.
+const BRIGHTEST: f32 = 1e18;
+
 struct Check<'a> {
     scene: &'a SceneDesc,
     found: Vec<Diagnostic>,
@@ -65,7 +68,14 @@ struct Check<'a> {
 
 impl Check<'_> {
     fn error(&mut self, code: &'static str, span: &Span, message: impl Into<String>) {
-        self.found.push(Diagnostic::error(code, span, message));
+        let error = Diagnostic::error(code, span, message);
+        // Roughness along x and y is one number in most files: one is enough.
+        let is_said = |last: &Diagnostic| {
+            last.span == error.span && last.code == error.code && last.message == error.message
+        };
+        if !self.found.last().is_some_and(is_said) {
+            self.found.push(error);
+        }
     }
 
     fn texture_id(&mut self, id: TextureId, span: &Span) {
@@ -82,9 +92,9 @@ impl Check<'_> {
     }
 
     fn color(&mut self, color: Rgb, what: &str, span: &Span) {
-        if !(color.is_finite() && color.min_element() >= 0.0) {
+        if !(color.min_element() >= 0.0 && color.max_element() <= BRIGHTEST) || color.is_nan() {
             let message = format!(
-                "{what} is {}, {}, {}: a color has no negative or infinite parts",
+                "{what} is {}, {}, {}: a color has no negative parts, and none above {BRIGHTEST:e}",
                 color.x, color.y, color.z
             );
             self.error("scene::bad-color", span, message);
