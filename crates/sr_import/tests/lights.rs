@@ -4,7 +4,7 @@ use std::path::Path;
 
 use glam::{Mat3, Vec3};
 use sr_import::{LoadOptions, load_str};
-use sr_scene::{Diagnostics, FovAxis, LightDesc, Rgb, SceneDesc, SphereMapping};
+use sr_scene::{ColorInput, Diagnostics, FovAxis, LightDesc, MaterialDesc, Rgb, SceneDesc, SphereMapping};
 
 fn read(body: &str) -> (Option<SceneDesc>, Diagnostics) {
     let sensor = "<sensor type=\"perspective\"><float name=\"fov\" value=\"40\"/></sensor>";
@@ -138,4 +138,46 @@ fn what_is_wrong_is_said() {
         let text = said(&body);
         assert!(text.contains(says), "{body}: {text}");
     }
+}
+
+#[test]
+fn what_lights_cannot_be_is_said() {
+    let placed_twice = "<emitter type=\"point\"><point name=\"position\" y=\"2\"/>
+        <transform name=\"to_world\"><translate y=\"5\"/></transform></emitter>";
+    assert!(said(placed_twice).starts_with("mitsuba::conflict: "), "{}", said(placed_twice));
+    let blinding = "<emitter type=\"constant\"><rgb name=\"radiance\" value=\"3e38\"/></emitter>";
+    assert!(said(blinding).starts_with("scene::bad-color: "), "{}", said(blinding));
+}
+
+/// As in Mitsuba: a light that is given a material has it, and one that is not reflects nothing.
+#[test]
+fn lights_without_a_material_are_black() {
+    let reflects = |emitter: &str, bsdf: &str| {
+        let (scene, _) = read(&format!("<shape type=\"rectangle\">{emitter}{bsdf}</shape>"));
+        let scene = scene.unwrap();
+        match scene.materials[scene.shapes[0].material.0 as usize] {
+            MaterialDesc::Diffuse { reflectance: ColorInput::Constant(color) } => color,
+            ref other => panic!("{other:?}"),
+        }
+    };
+    let (emitter, bsdf) = ("<emitter type=\"area\"/>", "<bsdf type=\"diffuse\"/>");
+    assert_eq!(reflects(emitter, ""), Rgb::ZERO);
+    assert_eq!(reflects(emitter, bsdf), Rgb::splat(0.5));
+    assert_eq!(reflects("", ""), Rgb::splat(0.5));
+}
+
+#[test]
+fn materials_and_textures_that_lack_something_say_so_once() {
+    let ball = |bsdf: &str| said(&format!("<shape type=\"sphere\">{bsdf}</shape>"));
+    let no_map = ball("<bsdf type=\"normalmap\"><bsdf type=\"diffuse\"/></bsdf>");
+    assert_eq!(no_map.lines().count(), 1, "{no_map}");
+    assert!(no_map.starts_with("mitsuba::wrong-nesting: "), "{no_map}");
+    let two = "<texture type=\"checkerboard\"/><texture type=\"mix\"/>";
+    for inputs in ["", two] {
+        let scale = format!("<texture name=\"reflectance\" type=\"scale\">{inputs}</texture>");
+        let said = ball(&format!("<bsdf type=\"diffuse\">{scale}</bsdf>"));
+        assert!(said.starts_with("mitsuba::wrong-nesting: "), "{said}");
+    }
+    let smooth = ball("<bsdf type=\"roughconductor\"><float name=\"alpha\" value=\"0\"/></bsdf>");
+    assert_eq!(smooth.lines().count(), 1, "{smooth}");
 }
