@@ -173,7 +173,9 @@ class Result:
 
     def __repr__(self) -> str:
         scene = Path(self.settings["scene"]).name
-        return (
-            f"<steradian.Result {scene}: {self.width} x {self.height}, {self.spp} spp, "
-            f"{100 * self.mean_relative_error:.2g} % mean error>"
-        )
+        relative = self.mean_relative_error
+        if math.isnan(relative):
+            error = "black"
+        else:
+            error = f"{100 * relative:.2g} % mean error" if math.isfinite(relative) else "error unknown"
+        return f"<steradian.Result {scene}: {self.width} x {self.height}, {self.spp} spp, {error}>"
