@@ -4,6 +4,8 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use sr_scene::{Diagnostic, Span};
+
 /// Larger files are refused.
 pub const MAX_FILE_BYTES: u64 = 4 << 30;
 /// Larger scene files are refused.
@@ -31,6 +33,14 @@ pub fn read(path: &Path, limit: u64) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
+/// The text of a scene file.
+pub fn read_text(path: &Path) -> Result<String, String> {
+    let bytes = read(path, MAX_SCENE_BYTES)?;
+    let text = String::from_utf8(bytes)
+        .map_err(|e| format!("byte {} is not UTF-8 text", e.utf8_error().valid_up_to()))?;
+    Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
+}
+
 fn reason(error: &std::io::Error) -> String {
     match error.kind() {
         std::io::ErrorKind::NotFound => "there is no such file".into(),
@@ -50,8 +60,19 @@ pub fn find(name: &str, directories: &[PathBuf]) -> PathBuf {
     found.or_else(|| candidates.next()).unwrap_or_else(|| path.to_owned())
 }
 
+/// A file that could not be used, with a guess at its name if it is missing.
+pub fn error(code: &'static str, span: &Span, what: &str, path: &Path, reason: &str) -> Diagnostic {
+    let error = Diagnostic::error(code, span, format!("cannot read the {what} {}: {reason}", path.display()));
+    if path.exists() {
+        return error;
+    }
+    let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+    let siblings = siblings(path);
+    error.guess(&name, siblings.iter().map(String::as_str))
+}
+
 /// The names in the directory where `path` was expected, for a guess at a misspelt file name.
-pub fn siblings(path: &Path) -> Vec<String> {
+fn siblings(path: &Path) -> Vec<String> {
     const ENOUGH: usize = 4096;
     let Some(directory) = path.parent() else { return Vec::new() };
     let Ok(entries) = std::fs::read_dir(directory) else { return Vec::new() };

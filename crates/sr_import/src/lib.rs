@@ -3,34 +3,31 @@
 //! In: Mitsuba XML (0.5, 0.6, 2.x and 3.x), or a tree of [`Node`]s that Python made of a dict. Out: a
 //! [`SceneDesc`] and [`Diagnostics`]. The description is there exactly if no diagnostic is an error.
 //!
-//! - `xml`: text to nodes: includes, references' names, `$parameters`. Decides no meaning.
-//! - `lower`: nodes to the description: plugins, defaults, units. Knows no XML.
+//! - `mitsuba`: one folder for each format: text to the calls of an `Assembly`.
+//! - `assembly`: what all formats share: a description as it grows.
 //! - `mesh`, `images`, `jpeg`, `ies`: the files that scenes name, read in parallel, each once.
 //!
 //! Invariant: no input makes this crate panic, loop for ever or use memory without bound; and nothing a file
 //! asks for is dropped without a diagnostic.
 
+mod assembly;
 mod files;
 mod ies;
 mod images;
 mod jpeg;
-mod lower;
+mod look_at;
 mod mesh;
-mod node;
+mod mitsuba;
 mod pfm;
-mod props;
 mod spectrum;
-mod tables;
-mod transform;
 mod values;
-mod xml;
 
 use std::path::{Path, PathBuf};
 
 use sr_scene::{Diagnostic, Diagnostics, SceneDesc, Span};
 
-pub use lower::Origin;
-pub use node::{Child, Node, OtherName, Property, Reference, SpectrumValue, Value};
+pub use mitsuba::Origin;
+pub use mitsuba::node::{Child, Node, OtherName, Property, Reference, SpectrumValue, Value};
 
 /// How to load a scene file.
 #[derive(Clone, Debug, Default)]
@@ -45,7 +42,7 @@ pub struct LoadOptions {
 pub fn load(path: &Path, options: &LoadOptions) -> (Option<SceneDesc>, Diagnostics) {
     let mut diagnostics = Diagnostics::default();
     let name = path.display().to_string();
-    match xml::read_text(path) {
+    match files::read_text(path) {
         Ok(text) => {
             let directory = path.parent().unwrap_or(Path::new("")).to_owned();
             let scene = load_text(&name, &text, directory, options, &mut diagnostics);
@@ -74,7 +71,7 @@ pub fn load_str(
 
 /// Lowers a tree that was not read from XML. `diagnostics` holds the sources that its spans point into.
 pub fn from_node(root: &Node, origin: &Origin, diagnostics: &mut Diagnostics) -> Option<SceneDesc> {
-    lower::lower(root, origin, diagnostics)
+    mitsuba::lower(root, origin, diagnostics)
 }
 
 fn load_text(
@@ -85,7 +82,5 @@ fn load_text(
     diagnostics: &mut Diagnostics,
 ) -> Option<SceneDesc> {
     let directories = std::iter::once(directory).chain(options.search_paths.iter().cloned()).collect();
-    let scene = xml::read(name, text, directories, &options.defines, diagnostics)?;
-    let origin = Origin { legacy: scene.legacy, directories: scene.directories };
-    lower::lower(&scene.root, &origin, diagnostics)
+    mitsuba::load(name, text, directories, &options.defines, diagnostics)
 }

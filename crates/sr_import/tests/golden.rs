@@ -96,12 +96,12 @@ fn mistakes_are_reported_with_place_guess_and_consequence() {
 #[test]
 fn bad_files_are_one_clear_error_each() {
     for (body, code) in [
-        ("<shape type=\"obj\"><string name=\"filename\" value=\".\"/></shape>", "mitsuba::bad-mesh"),
-        ("<shape type=\"ply\"><string name=\"filename\" value=\"/dev/zero\"/></shape>", "mitsuba::bad-mesh"),
+        ("<shape type=\"obj\"><string name=\"filename\" value=\".\"/></shape>", "file::bad-mesh"),
+        ("<shape type=\"ply\"><string name=\"filename\" value=\"/dev/zero\"/></shape>", "file::bad-mesh"),
         ("<include filename=\"absent.xml\"/>", "mitsuba::bad-value"),
         (
             "<emitter type=\"envmap\"><string name=\"filename\" value=\"mistakes.xml\"/></emitter>",
-            "mitsuba::bad-image",
+            "file::bad-image",
         ),
         ("<bsdf type=\"twosided\"><bsdf type=\"dielectric\"/></bsdf>", "scene::twosided-transmission"),
         ("<bsdf type=\"mask\" id=\"a\"><ref id=\"a\"/></bsdf>", "mitsuba::cycle"),
@@ -129,10 +129,10 @@ fn shapes_without_area_are_left_out_unless_nothing_else_is_there() {
     let flat = "<shape type=\"rectangle\"><transform name=\"to_world\"><scale x=\"0\"/></transform></shape>";
     let (scene, d) = read(&format!("{flat}<shape type=\"sphere\"/>"));
     assert_eq!(scene.unwrap().shapes.len(), 1);
-    assert_eq!(d.list[0].code, "mitsuba::degenerate-triangles");
+    assert_eq!(d.list[0].code, "scene::degenerate-triangles");
     let (scene, d) = read(flat);
     assert!(scene.is_none());
-    assert!(d.list.iter().any(|d| d.code == "mitsuba::nothing-left"));
+    assert!(d.list.iter().any(|d| d.code == "scene::nothing-left"));
 }
 
 #[test]

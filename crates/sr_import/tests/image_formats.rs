@@ -227,7 +227,7 @@ fn textures_are_nested_but_not_without_end() {
         ),
         (
             "<texture type='bitmap' name='reflectance'><string name='filename' value='none.png'/></texture>",
-            "mitsuba::bad-image",
+            "file::bad-image",
         ),
     ] {
         assert!(codes(&format!("<bsdf type='diffuse'>{body}</bsdf>")).contains(&code), "{body}");

@@ -26,7 +26,7 @@ fn triangles(scene: &SceneDesc) -> usize {
     scene.shapes.iter().map(count).sum()
 }
 
-const ZERO_AREA: &str = "mitsuba::degenerate-triangles";
+const ZERO_AREA: &str = "scene::degenerate-triangles";
 
 /// Name, shapes, triangles, lights without a shape, longest path, warnings by code.
 type Expected = (&'static str, usize, usize, usize, Option<u32>, &'static [&'static str]);

@@ -134,7 +134,7 @@ fn meshes_are_subdivided() {
     };
     assert_eq!(mesh.triangles.len(), 2 * 36);
     for (extra, code) in [
-        ("<integer name='subdivide' value='40'/>", "mitsuba::bad-mesh"),
+        ("<integer name='subdivide' value='40'/>", "file::bad-mesh"),
         ("<integer name='subdivide' value='-1'/>", "mitsuba::bad-value"),
         ("<string name='scheme' value='lop'/>", "mitsuba::unknown-value"),
     ] {

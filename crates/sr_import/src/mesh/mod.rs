@@ -8,7 +8,7 @@ pub mod primitives;
 mod serialized;
 mod subdivide;
 
-pub use place::{Placement, Report, place};
+pub use place::{Convention, Placement, Report, place};
 pub use subdivide::{Scheme, Subdivision};
 
 use std::path::Path;

@@ -21,8 +21,21 @@ pub struct Placement {
     pub flat: bool,
     /// The mesh is the control mesh of a subdivision surface.
     pub subdivision: Option<Subdivision>,
+    /// What the format takes for granted.
+    pub convention: Convention,
     /// Are the mesh's colors wanted?
     pub colors: bool,
+}
+
+/// What a format takes for granted where a mesh has no normals.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Convention {
+    /// Smooth normals are made; a mirroring transform swaps the sides.
+    #[default]
+    Mitsuba,
+    /// It is flat; whatever the transform, the front is where the corners turn counter-clockwise in the mesh's own
+    /// space. pbrt and glTF have it so.
+    Flat,
 }
 
 /// What was noticed on the way.
@@ -36,9 +49,8 @@ pub struct Report {
 
 /// Places a mesh; the error is half a sentence.
 ///
-/// Orientation follows Mitsuba: the front is where vertex normals point (transformed by the inverse
-/// transpose), and without them where the *transformed* corners turn counter-clockwise, so that a mirroring
-/// transform swaps the sides of a mesh without normals.
+/// The front is where vertex normals point (transformed by the inverse transpose); without them it is as the
+/// [`Convention`] has it.
 pub fn place(RawMesh { mesh, fans }: &RawMesh, placement: &Placement) -> Result<(MeshDesc, Report), String> {
     check(mesh)?;
     if let Some(how) = placement.subdivision {
@@ -65,7 +77,9 @@ fn placed(mesh: &MeshDesc, placement: &Placement) -> Result<(MeshDesc, Report), 
     };
     let keeps_normals =
         !mesh.normals.is_empty() && !placement.face_normals && placement.max_smooth_angle.is_none();
-    let mirrored = keeps_normals && linear.determinant() < 0.0;
+    let keeps_front = keeps_normals || placement.convention == Convention::Flat;
+    let mirrored = keeps_front && linear.determinant() < 0.0;
+    let stays_flat = placement.flat || (placement.convention == Convention::Flat && mesh.normals.is_empty());
     for (index, &[a, b, c]) in mesh.triangles.iter().enumerate() {
         if has_area([a, b, c].map(|i| out.positions[i as usize])) {
             out.triangles.push(if mirrored { [a, c, b] } else { [a, b, c] });
@@ -73,7 +87,7 @@ fn placed(mesh: &MeshDesc, placement: &Placement) -> Result<(MeshDesc, Report), 
         }
     }
     report.degenerate = mesh.triangles.len() - out.triangles.len();
-    if placement.face_normals || placement.flat {
+    if placement.face_normals || stays_flat {
         // Flat shading needs no normals.
     } else if let Some(angle) = placement.max_smooth_angle {
         normals::crease(&mut out, angle);
@@ -162,6 +176,7 @@ mod tests {
             max_smooth_angle: None,
             flat: false,
             subdivision: None,
+            convention: Convention::Mitsuba,
             colors: true,
         }
     }
@@ -186,6 +201,11 @@ mod tests {
         let (square, _) =
             placed(&primitives::rectangle(), &Placement { flat: true, ..placement(mirror) }).unwrap();
         assert_eq!(geometric(&square, 0), Vec3::NEG_Z);
+        assert!(square.normals.is_empty());
+        // Elsewhere the front stays the front.
+        let flat = Placement { convention: Convention::Flat, ..placement(mirror) };
+        let (square, _) = placed(&primitives::rectangle(), &flat).unwrap();
+        assert_eq!(geometric(&square, 0), Vec3::Z);
         assert!(square.normals.is_empty());
     }
 

@@ -8,8 +8,8 @@ use sr_scene::{ColorInput, Diagnostic, LightDesc, Portal, Rgb, SphereMapping};
 use super::Lowering;
 use super::color::Role;
 use crate::images::Decode;
-use crate::node::Node;
-use crate::props::Props;
+use crate::mitsuba::node::Node;
+use crate::mitsuba::props::Props;
 use crate::{files, ies};
 
 const KNOWN: &[&str] = &[
@@ -42,20 +42,20 @@ impl<'a> Lowering<'a, '_> {
             "point" => {
                 if props.has("position") && props.has("to_world") {
                     let message = format!("{} has both \"position\" and \"to_world\"", node.title());
-                    self.d.push(
+                    self.out.d.push(
                         Diagnostic::warning("mitsuba::conflict", &node.span, message)
                             .consequence("\"position\" is used, as it is"),
                     );
                 }
-                let to_world = props.transform("to_world", self.d);
-                let position = props.vector("position", self.d);
+                let to_world = props.transform("to_world", self.out.d);
+                let position = props.vector("position", self.out.d);
                 let position = position.unwrap_or_else(|| to_world.transform_point3(DVec3::ZERO)).as_vec3();
                 let intensity = self.constant_color(&mut props, "intensity", Rgb::ONE, Role::Emission);
                 Some(LightDesc::Point { position, intensity, span })
             }
             "directional" => {
-                let to_world = props.transform("to_world", self.d);
-                let direction = props.vector("direction", self.d);
+                let to_world = props.transform("to_world", self.out.d);
+                let direction = props.vector("direction", self.out.d);
                 let direction = direction.unwrap_or_else(|| to_world.transform_vector3(DVec3::Z));
                 let irradiance = self.constant_color(&mut props, "irradiance", Rgb::ONE, Role::Emission);
                 match direction.try_normalize() {
@@ -64,16 +64,16 @@ impl<'a> Lowering<'a, '_> {
                     }
                     None => {
                         let message = "the direction of a directional emitter cannot be zero";
-                        self.d.push(Diagnostic::error("mitsuba::bad-value", &node.span, message));
+                        self.out.d.push(Diagnostic::error("mitsuba::bad-value", &node.span, message));
                         None
                     }
                 }
             }
             "spot" => {
-                let world_from_light = props.transform("to_world", self.d).as_mat4();
+                let world_from_light = props.transform("to_world", self.out.d).as_mat4();
                 let intensity = self.constant_color(&mut props, "intensity", Rgb::ONE, Role::Emission);
-                let cutoff = props.float("cutoff_angle", self.d).unwrap_or(20.0);
-                let beam = props.float("beam_width", self.d).unwrap_or(cutoff * 0.75);
+                let cutoff = props.float("cutoff_angle", self.out.d).unwrap_or(20.0);
+                let beam = props.float("beam_width", self.out.d).unwrap_or(cutoff * 0.75);
                 let texture = match self.color_if_given(&mut props, "texture", Role::Factor) {
                     Some(ColorInput::Texture(id)) => Some(id),
                     Some(ColorInput::Constant(_)) | None => None,
@@ -82,9 +82,9 @@ impl<'a> Lowering<'a, '_> {
                 Some(LightDesc::Spot { world_from_light, intensity, cutoff_angle, beam_width, texture, span })
             }
             "projector" => {
-                let world_from_light = props.transform("to_world", self.d).as_mat4();
+                let world_from_light = props.transform("to_world", self.out.d).as_mat4();
                 let irradiance = self.color(&mut props, "irradiance", Rgb::ONE, Role::Emission);
-                let scale = props.float("scale", self.d).unwrap_or(1.0);
+                let scale = props.float("scale", self.out.d).unwrap_or(1.0);
                 let (fov_axis, fov) = self.field_of_view(node, &mut props, true);
                 Some(LightDesc::Projector { world_from_light, irradiance, scale, fov_axis, fov, span })
             }
@@ -92,7 +92,7 @@ impl<'a> Lowering<'a, '_> {
             "ies" => self.profile(node, &mut props),
             "sunsky" | "sky" | "sun" => {
                 let lights = self.sunsky(node, &mut props);
-                self.lights.extend(lights);
+                self.out.lights.extend(lights);
                 None
             }
             _ => {
@@ -101,16 +101,16 @@ impl<'a> Lowering<'a, '_> {
                 None
             }
         };
-        props.finish(self.d);
-        self.lights.extend(light);
+        props.finish(self.out.d);
+        self.out.lights.extend(light);
     }
 
     fn environment(&mut self, node: &'a Node, props: &mut Props<'a>) -> Option<LightDesc> {
-        let scale = props.float("scale", self.d).unwrap_or(1.0);
-        let to_world = props.transform("to_world", self.d);
-        let mis_compensation = props.boolean("mis_compensation", self.d).unwrap_or(false);
+        let scale = props.float("scale", self.out.d).unwrap_or(1.0);
+        let to_world = props.transform("to_world", self.out.d);
+        let mis_compensation = props.boolean("mis_compensation", self.out.d).unwrap_or(false);
         props.ignore(&["cache"]);
-        props.unsupported(&["gamma"], "8-bit values are read as sRGB", self.d);
+        props.unsupported(&["gamma"], "8-bit values are read as sRGB", self.out.d);
         let mapping = self.sphere_mapping(props);
         let portals = self.portals(props);
         let rotation = self.rotation_of(to_world, "an environment", node);
@@ -127,7 +127,7 @@ impl<'a> Lowering<'a, '_> {
     }
 
     fn sphere_mapping(&mut self, props: &mut Props<'a>) -> SphereMapping {
-        match props.string("mapping", self.d) {
+        match props.string("mapping", self.out.d) {
             None | Some(("latlong", _)) => SphereMapping::LatLong,
             Some(("octahedral", _)) => SphereMapping::EqualAreaOctahedral,
             Some((other, span)) => {
@@ -150,21 +150,21 @@ impl<'a> Lowering<'a, '_> {
                 continue;
             }
             let mut props = Props::new(node);
-            let m = props.transform("to_world", self.d);
+            let m = props.transform("to_world", self.out.d);
             let corner = m.transform_point3(DVec3::new(-1.0, -1.0, 0.0)).as_vec3();
             let edge = |m: DMat4, v: DVec3| m.transform_vector3(2.0 * v).as_vec3();
             let mut edges = [edge(m, DVec3::X), edge(m, DVec3::Y)];
-            if props.boolean("flip_normals", self.d).unwrap_or(false) {
+            if props.boolean("flip_normals", self.out.d).unwrap_or(false) {
                 edges.swap(0, 1);
             }
-            props.finish(self.d);
+            props.finish(self.out.d);
             portals.push(Portal { corner, edges });
         }
         portals
     }
 
     fn goniometric(&mut self, node: &'a Node, props: &mut Props<'a>) -> Option<LightDesc> {
-        let world_from_light = props.transform("to_world", self.d).as_mat4();
+        let world_from_light = props.transform("to_world", self.out.d).as_mat4();
         let intensity = self.constant_color(props, "intensity", Rgb::ONE, Role::Emission);
         let mapping = self.sphere_mapping(props);
         let image = self.image_of(props, Decode::Linear)?;
@@ -172,14 +172,14 @@ impl<'a> Lowering<'a, '_> {
     }
 
     fn profile(&mut self, node: &'a Node, props: &mut Props<'a>) -> Option<LightDesc> {
-        let world_from_light = props.transform("to_world", self.d).as_mat4();
+        let world_from_light = props.transform("to_world", self.out.d).as_mat4();
         let intensity = self.constant_color(props, "intensity", Rgb::ONE, Role::Emission);
-        let Some((name, span)) = props.string("filename", self.d) else {
+        let Some((name, span)) = props.string("filename", self.out.d) else {
             let message = format!("{} needs a \"filename\"", node.title());
-            self.d.push(Diagnostic::error("mitsuba::missing-property", &node.span, message));
+            self.out.d.push(Diagnostic::error("mitsuba::missing-property", &node.span, message));
             return None;
         };
-        let path = files::find(name, &self.origin.directories);
+        let path = self.out.find(name);
         let read =
             files::read(&path, ies::MAX_BYTES).and_then(|b| ies::parse(&path.display().to_string(), &b));
         match read {
@@ -190,8 +190,8 @@ impl<'a> Lowering<'a, '_> {
                 span: node.span.clone(),
             }),
             Err(reason) => {
-                let error = self.file_error("mitsuba::bad-profile", span, "IES profile", &path, &reason);
-                self.d.push(error);
+                let error = files::error("mitsuba::bad-profile", span, "IES profile", &path, &reason);
+                self.out.d.push(error);
                 None
             }
         }

@@ -1,13 +1,13 @@
 //! Textures: bitmaps, checkerboards, what is made of others, and spectra that are written as objects.
 
 use glam::{Affine2, DMat4, DVec3, Mat2, Vec2};
-use sr_scene::{ColorInput, Diagnostic, Filter, MeshColorOf, Rgb, Span, TextureDesc, TextureId, Wrap};
+use sr_scene::{ColorInput, Diagnostic, Filter, MeshColorOf, Rgb, Span, TextureDesc, Wrap};
 
 use super::color::Role;
 use super::{Lowering, key};
 use crate::images::Decode;
-use crate::node::{Node, SpectrumValue, Value};
-use crate::props::{Props, finite_color};
+use crate::mitsuba::node::{Node, SpectrumValue, Value};
+use crate::mitsuba::props::{Props, finite_color};
 use crate::values;
 
 const KNOWN: &[&str] = &[
@@ -36,7 +36,7 @@ impl<'a> Lowering<'a, '_> {
         }
         if !self.open.insert(key(node)) {
             let message = format!("{} contains itself", node.title());
-            self.d.push(Diagnostic::error("mitsuba::cycle", &node.span, message));
+            self.out.d.push(Diagnostic::error("mitsuba::cycle", &node.span, message));
             return ColorInput::Constant(STAND_IN);
         }
         let mut props = Props::new(node);
@@ -44,10 +44,10 @@ impl<'a> Lowering<'a, '_> {
             self.texture_kind(node, &mut props, role)
         } else {
             let message = format!("a texture was expected, not {}", node.title());
-            self.d.push(Diagnostic::error("mitsuba::wrong-type", &node.span, message));
+            self.out.d.push(Diagnostic::error("mitsuba::wrong-type", &node.span, message));
             ColorInput::Constant(STAND_IN)
         };
-        props.finish(self.d);
+        props.finish(self.out.d);
         self.open.remove(&key(node));
         self.textures_done.insert(key(node), input);
         input
@@ -57,11 +57,16 @@ impl<'a> Lowering<'a, '_> {
         match node.kind.as_str() {
             "bitmap" => self.bitmap(node, props),
             "checkerboard" => {
-                props.unsupported(&["line_width"], "there are no lines", self.d);
+                props.unsupported(&["line_width"], "there are no lines", self.out.d);
                 let color0 = self.color(props, "color0", Rgb::splat(0.4), role);
                 let color1 = self.color(props, "color1", Rgb::splat(0.2), role);
                 let to_uv = self.uv_transform(props);
-                self.add_texture(TextureDesc::Checkerboard { color0, color1, to_uv, span: node.span.clone() })
+                self.out.add_texture(TextureDesc::Checkerboard {
+                    color0,
+                    color1,
+                    to_uv,
+                    span: node.span.clone(),
+                })
             }
             "scale" => {
                 // First: what is left is scaled.
@@ -72,17 +77,17 @@ impl<'a> Lowering<'a, '_> {
                     ref others => {
                         let message =
                             format!("{} needs one texture inside it, not {}", node.title(), others.len());
-                        self.d.push(Diagnostic::error("mitsuba::wrong-nesting", &node.span, message));
+                        self.out.d.push(Diagnostic::error("mitsuba::wrong-nesting", &node.span, message));
                         ColorInput::Constant(STAND_IN)
                     }
                 };
-                self.add_texture(TextureDesc::Scale { input, factor, span: node.span.clone() })
+                self.out.add_texture(TextureDesc::Scale { input, factor, span: node.span.clone() })
             }
             "mix" => {
                 let color0 = self.color(props, "color0", Rgb::ZERO, role);
                 let color1 = self.color(props, "color1", Rgb::ONE, role);
                 let weight = self.scalar(props, "weight", 0.5);
-                self.add_texture(TextureDesc::Mix { color0, color1, weight, span: node.span.clone() })
+                self.out.add_texture(TextureDesc::Mix { color0, color1, weight, span: node.span.clone() })
             }
             "mesh_attribute" => self.mesh_attribute(node, props),
             "uniform" | "constant" => self.color(props, "value", Rgb::ONE, role),
@@ -92,23 +97,26 @@ impl<'a> Lowering<'a, '_> {
             }
             "d65" => {
                 let scale = self.color(props, "value", Rgb::ONE, Role::Factor);
-                let factor = props.float("scale", self.d).unwrap_or(1.0);
+                let factor = props.float("scale", self.out.d).unwrap_or(1.0);
                 match scale {
                     ColorInput::Constant(c) => ColorInput::Constant(c * factor),
                     textured => textured,
                 }
             }
             "blackbody" => {
-                let temperature = props.float("temperature", self.d).unwrap_or(5000.0).into();
-                let scale =
-                    props.float("value", self.d).or(props.float("scale", self.d)).unwrap_or(1.0).into();
+                let temperature = props.float("temperature", self.out.d).unwrap_or(5000.0).into();
+                let scale = props
+                    .float("value", self.out.d)
+                    .or(props.float("scale", self.out.d))
+                    .unwrap_or(1.0)
+                    .into();
                 self.spectrum_object(&SpectrumValue::Blackbody { temperature, scale }, role, node)
             }
             "regular" | "irregular" => match self.sampled(node, props) {
                 Ok(samples) => self.spectrum_object(&SpectrumValue::Samples(samples), role, node),
                 Err(reason) => {
                     let message = format!("{}: {reason}", node.title());
-                    self.d.push(Diagnostic::error("mitsuba::bad-value", &node.span, message));
+                    self.out.d.push(Diagnostic::error("mitsuba::bad-value", &node.span, message));
                     ColorInput::Constant(STAND_IN)
                 }
             },
@@ -126,7 +134,7 @@ impl<'a> Lowering<'a, '_> {
 
     fn spectrum_object(&mut self, value: &SpectrumValue, role: Role, node: &Node) -> ColorInput {
         let color = self.spectrum(value, role, &node.span);
-        let color = color.and_then(|c| finite_color(c, &node.kind, &node.span, self.d));
+        let color = color.and_then(|c| finite_color(c, &node.kind, &node.span, self.out.d));
         ColorInput::Constant(color.unwrap_or(STAND_IN))
     }
 
@@ -136,12 +144,12 @@ impl<'a> Lowering<'a, '_> {
             Some((text, _)) => values::numbers(text),
             None => Err(format!("\"{name}\" is missing")),
         };
-        let heights = list(props, "values", self.d)?;
+        let heights = list(props, "values", self.out.d)?;
         let wavelengths = if node.kind == "irregular" {
-            list(props, "wavelengths", self.d)?
+            list(props, "wavelengths", self.out.d)?
         } else {
-            let min = f64::from(props.float("wavelength_min", self.d).unwrap_or(360.0));
-            let max = f64::from(props.float("wavelength_max", self.d).unwrap_or(830.0));
+            let min = f64::from(props.float("wavelength_min", self.out.d).unwrap_or(360.0));
+            let max = f64::from(props.float("wavelength_max", self.out.d).unwrap_or(830.0));
             let steps = heights.len().saturating_sub(1).max(1) as f64;
             (0..heights.len()).map(|i| min + (max - min) * i as f64 / steps).collect()
         };
@@ -152,7 +160,7 @@ impl<'a> Lowering<'a, '_> {
     }
 
     fn bitmap(&mut self, node: &'a Node, props: &mut Props<'a>) -> ColorInput {
-        let filter = match props.string("filter_type", self.d) {
+        let filter = match props.string("filter_type", self.out.d) {
             None | Some(("bilinear", _)) => Filter::Bilinear,
             Some(("nearest", _)) => Filter::Nearest,
             Some(("mipmap", _)) => Filter::Mipmap,
@@ -161,7 +169,7 @@ impl<'a> Lowering<'a, '_> {
                 Filter::Bilinear
             }
         };
-        let wrap = match props.string("wrap_mode", self.d) {
+        let wrap = match props.string("wrap_mode", self.out.d) {
             None | Some(("repeat", _)) => Wrap::Repeat,
             Some(("mirror", _)) => Wrap::Mirror,
             Some(("clamp", _)) => Wrap::Clamp,
@@ -170,14 +178,14 @@ impl<'a> Lowering<'a, '_> {
                 Wrap::Repeat
             }
         };
-        props.unsupported(&["wrap_mode_u", "wrap_mode_v"], "the image is repeated", self.d);
-        props.unsupported(&["channel"], "all channels are used", self.d);
+        props.unsupported(&["wrap_mode_u", "wrap_mode_v"], "the image is repeated", self.out.d);
+        props.unsupported(&["channel"], "all channels are used", self.out.d);
         props.ignore(&["accel", "format", "cache", "max_anisotropy"]);
-        let mut raw = props.boolean("raw", self.d).unwrap_or(false);
-        if let Some(gamma) = props.float("gamma", self.d) {
+        let mut raw = props.boolean("raw", self.out.d).unwrap_or(false);
+        if let Some(gamma) = props.float("gamma", self.out.d) {
             raw |= gamma == 1.0;
             if gamma != 1.0 && (gamma - 2.2).abs() > 0.01 && gamma != -1.0 {
-                self.d.push(
+                self.out.d.push(
                     Diagnostic::warning(
                         "mitsuba::gamma",
                         &node.span,
@@ -190,7 +198,7 @@ impl<'a> Lowering<'a, '_> {
         let to_uv = self.uv_transform(props);
         let decode = if raw { Decode::Raw } else { Decode::Color };
         let Some(image) = self.image_of(props, decode) else { return ColorInput::Constant(STAND_IN) };
-        self.add_texture(TextureDesc::Bitmap {
+        self.out.add_texture(TextureDesc::Bitmap {
             image,
             filter,
             wrap,
@@ -201,13 +209,13 @@ impl<'a> Lowering<'a, '_> {
     }
 
     fn mesh_attribute(&mut self, node: &'a Node, props: &mut Props<'a>) -> ColorInput {
-        let scale = props.float("scale", self.d).unwrap_or(1.0);
-        let of = match props.string("name", self.d) {
+        let scale = props.float("scale", self.out.d).unwrap_or(1.0);
+        let of = match props.string("name", self.out.d) {
             Some(("vertex_color", _)) => MeshColorOf::Vertices,
             Some(("face_color", _)) => MeshColorOf::Faces,
             Some((other, span)) => {
                 let message = format!("the mesh attribute \"{}\" is not read", values::shown(other));
-                self.d.push(
+                self.out.d.push(
                     Diagnostic::warning("mitsuba::unknown-value", span, message)
                         .guess(other, ["vertex_color", "face_color"])
                         .consequence("the constant 0.5 is used"),
@@ -216,11 +224,11 @@ impl<'a> Lowering<'a, '_> {
             }
             None => {
                 let message = format!("{} needs a \"name\"", node.title());
-                self.d.push(Diagnostic::error("mitsuba::missing-property", &node.span, message));
+                self.out.d.push(Diagnostic::error("mitsuba::missing-property", &node.span, message));
                 return ColorInput::Constant(STAND_IN);
             }
         };
-        self.add_texture(TextureDesc::MeshColor { of, scale, span: node.span.clone() })
+        self.out.add_texture(TextureDesc::MeshColor { of, scale, span: node.span.clone() })
     }
 
     /// The image that a node names by `filename`, or holds as `bitmap` or `data`.
@@ -228,16 +236,16 @@ impl<'a> Lowering<'a, '_> {
         for name in ["bitmap", "data"] {
             if let Some(property) = props.get(name) {
                 return match &property.value {
-                    Value::Image(image) => Some(self.image_in_memory(image)),
-                    _ => props.wrong_type(property, "an image", self.d),
+                    Value::Image(image) => Some(self.out.image_in_memory(image)),
+                    _ => props.wrong_type(property, "an image", self.out.d),
                 };
             }
         }
-        match props.string("filename", self.d) {
-            Some((name, span)) => Some(self.image_file(name, decode, span)),
+        match props.string("filename", self.out.d) {
+            Some((name, span)) => Some(self.out.image_file(name, decode, span)),
             None => {
                 let message = format!("{} needs a \"filename\"", props.node.title());
-                self.d.push(Diagnostic::error("mitsuba::missing-property", &props.node.span, message));
+                self.out.d.push(Diagnostic::error("mitsuba::missing-property", &props.node.span, message));
                 None
             }
         }
@@ -245,10 +253,10 @@ impl<'a> Lowering<'a, '_> {
 
     /// `to_uv`, or the `uscale`, `vscale`, `uoffset`, `voffset` of old.
     fn uv_transform(&mut self, props: &mut Props<'a>) -> Affine2 {
-        let mut old = |name| props.float(name, self.d);
+        let mut old = |name| props.float(name, self.out.d);
         let scale = [old("uscale"), old("vscale")];
         let offset = [old("uoffset"), old("voffset")];
-        let m = props.transform("to_uv", self.d);
+        let m = props.transform("to_uv", self.out.d);
         if scale.iter().chain(&offset).any(Option::is_some) {
             let offset = Vec2::from(offset.map(|v| v.unwrap_or(0.0)));
             return Affine2::from_scale_angle_translation(
@@ -260,15 +268,10 @@ impl<'a> Lowering<'a, '_> {
         affine2(m)
     }
 
-    fn add_texture(&mut self, texture: TextureDesc) -> ColorInput {
-        self.textures.push(texture);
-        ColorInput::Texture(TextureId(self.textures.len() as u32 - 1))
-    }
-
     /// A word of a fixed vocabulary that is not in it.
     pub(super) fn unknown_word(&mut self, what: &str, word: &str, known: &[&str], used: &str, span: &Span) {
         let message = format!("\"{}\" is not a {what} that is supported", values::shown(word));
-        self.d.push(
+        self.out.d.push(
             Diagnostic::warning("mitsuba::unknown-value", span, message)
                 .guess(word, known.iter().copied())
                 .consequence(format!("\"{used}\" is used")),

@@ -4,9 +4,9 @@ use sr_scene::{ColorInput, Diagnostic, MaterialDesc, MaterialId, MicrofacetKind,
 
 use super::color::Role;
 use super::{Lowering, key};
-use crate::node::{Node, Value};
-use crate::props::Props;
-use crate::tables;
+use crate::mitsuba::node::{Node, Value};
+use crate::mitsuba::props::Props;
+use crate::mitsuba::tables;
 
 const KNOWN: &[&str] = &[
     "diffuse",
@@ -42,20 +42,20 @@ impl<'a> Lowering<'a, '_> {
         }
         if node.class != "bsdf" {
             let message = format!("a BSDF was expected, not {}", node.title());
-            self.d.push(Diagnostic::error("mitsuba::wrong-type", &node.span, message));
+            self.out.d.push(Diagnostic::error("mitsuba::wrong-type", &node.span, message));
             return self.default_material(node);
         }
         if !self.open.insert(key(node)) {
             let message = format!("{} contains itself", node.title());
-            self.d.push(Diagnostic::error("mitsuba::cycle", &node.span, message));
+            self.out.d.push(Diagnostic::error("mitsuba::cycle", &node.span, message));
             return self.default_material(node);
         }
         let mut props = Props::new(node);
         let desc = self.material_kind(node, &mut props);
-        props.finish(self.d);
+        props.finish(self.out.d);
         self.open.remove(&key(node));
         let id = match desc {
-            Lowered::New(desc) => self.add_material(desc, node),
+            Lowered::New(desc) => self.out.add_material(desc, &node.span),
             Lowered::Same(id) => id,
         };
         self.materials_done.insert(key(node), id);
@@ -64,13 +64,7 @@ impl<'a> Lowering<'a, '_> {
 
     /// What stands in for a BSDF that cannot be had.
     pub(super) fn default_material(&mut self, node: &Node) -> MaterialId {
-        self.add_material(diffuse(GREY), node)
-    }
-
-    pub(super) fn add_material(&mut self, desc: MaterialDesc, node: &Node) -> MaterialId {
-        self.materials.push(desc);
-        self.material_spans.push(node.span.clone());
-        MaterialId(self.materials.len() as u32 - 1)
+        self.out.add_material(diffuse(GREY), &node.span)
     }
 
     fn material_kind(&mut self, node: &'a Node, props: &mut Props<'a>) -> Lowered {
@@ -110,7 +104,7 @@ impl<'a> Lowering<'a, '_> {
                 eta: self.eta(props, "polypropylene"),
                 diffuse_reflectance: self.factor(props, "diffuse_reflectance", GREY),
                 specular_reflectance: self.factor(props, "specular_reflectance", Rgb::ONE),
-                nonlinear: props.boolean("nonlinear", self.d).unwrap_or(false),
+                nonlinear: props.boolean("nonlinear", self.out.d).unwrap_or(false),
             },
             "roughplastic" => MaterialDesc::RoughPlastic {
                 kind: self.distribution(props),
@@ -118,7 +112,7 @@ impl<'a> Lowering<'a, '_> {
                 eta: self.eta(props, "polypropylene"),
                 diffuse_reflectance: self.factor(props, "diffuse_reflectance", GREY),
                 specular_reflectance: self.factor(props, "specular_reflectance", Rgb::ONE),
-                nonlinear: props.boolean("nonlinear", self.d).unwrap_or(false),
+                nonlinear: props.boolean("nonlinear", self.out.d).unwrap_or(false),
                 multiscatter: self.multiscatter(props),
             },
             "coateddiffuse" => self.coated_diffuse(props),
@@ -193,12 +187,12 @@ impl<'a> Lowering<'a, '_> {
 
     fn wrong_nesting(&mut self, node: &Node, expected: &str, found: usize) -> Lowered {
         let message = format!("{} needs {expected} inside it, not {found}", node.title());
-        self.d.push(Diagnostic::error("mitsuba::wrong-nesting", &node.span, message));
+        self.out.d.push(Diagnostic::error("mitsuba::wrong-nesting", &node.span, message));
         Lowered::New(diffuse(GREY))
     }
 
     fn bump_map(&mut self, node: &'a Node, props: &mut Props<'a>) -> Lowered {
-        let scale = props.float("scale", self.d).unwrap_or(1.0);
+        let scale = props.float("scale", self.out.d).unwrap_or(1.0);
         let tilting = self.tilting(props);
         // The texture goes by several names; it is the only one there can be.
         let textures = self.nested(props, "texture");
@@ -220,10 +214,10 @@ impl<'a> Lowering<'a, '_> {
 
     fn tilting(&mut self, props: &mut Props<'a>) -> Tilting {
         let default = Tilting::default();
-        let flip = props.boolean("flip_invalid_normals", self.d);
+        let flip = props.boolean("flip_invalid_normals", self.out.d);
         Tilting {
             flip_invalid_normals: flip.unwrap_or(default.flip_invalid_normals),
-            shadows: props.boolean("use_shadowing_function", self.d).unwrap_or(default.shadows),
+            shadows: props.boolean("use_shadowing_function", self.out.d).unwrap_or(default.shadows),
         }
     }
 
@@ -249,12 +243,12 @@ impl<'a> Lowering<'a, '_> {
             ),
         };
         self.unknown_plugin(node, KNOWN, &consequence);
-        let side = self.add_material(MaterialDesc::Diffuse { reflectance }, node);
+        let side = self.out.add_material(MaterialDesc::Diffuse { reflectance }, &node.span);
         Lowered::New(MaterialDesc::TwoSided { front: side, back: side })
     }
 
     pub(super) fn distribution(&mut self, props: &mut Props<'a>) -> MicrofacetKind {
-        match props.string("distribution", self.d) {
+        match props.string("distribution", self.out.d) {
             None | Some(("beckmann", _)) => MicrofacetKind::Beckmann,
             Some(("ggx", _)) => MicrofacetKind::Ggx,
             Some((other, span)) => {
@@ -277,7 +271,7 @@ impl<'a> Lowering<'a, '_> {
             ScalarInput::Constant(alpha) => alpha,
             ScalarInput::Texture(_) => {
                 let message = format!("\"{name}\" of {} cannot be a texture", props.node.title());
-                self.d.push(
+                self.out.d.push(
                     Diagnostic::warning("mitsuba::texture-not-possible", &props.node.span, message)
                         .consequence(format!("the default, {default}, is used")),
                 );
@@ -288,7 +282,7 @@ impl<'a> Lowering<'a, '_> {
 
     /// Ours: is light that bounces between facets added?
     fn multiscatter(&mut self, props: &mut Props<'a>) -> bool {
-        props.boolean("multiscatter", self.d).unwrap_or(false)
+        props.boolean("multiscatter", self.out.d).unwrap_or(false)
     }
 
     /// Interior over exterior index of refraction.
@@ -303,12 +297,12 @@ impl<'a> Lowering<'a, '_> {
     fn ior(&mut self, props: &mut Props<'a>, name: &'static str) -> Option<f64> {
         let property = props.get(name)?;
         let Value::String(text) = &property.value else {
-            return props.float(name, self.d).map(f64::from);
+            return props.float(name, self.out.d).map(f64::from);
         };
         let known = tables::ior(text);
         if known.is_none() {
             let message = format!("no index of refraction is known for \"{}\"", crate::values::shown(text));
-            self.d.push(
+            self.out.d.push(
                 Diagnostic::error("mitsuba::unknown-value", &property.span, message)
                     .guess(text, tables::IORS.iter().map(|(n, _)| *n)),
             );
@@ -320,7 +314,7 @@ impl<'a> Lowering<'a, '_> {
     pub(super) fn eta_k(&mut self, props: &mut Props<'a>) -> Option<(ColorInput, ColorInput)> {
         let exterior =
             self.ior(props, "ext_eta").or_else(|| self.ior(props, "ext_ior")).unwrap_or(1.0) as f32;
-        let material = props.string("material", self.d);
+        let material = props.string("material", self.out.d);
         if props.has("eta") || props.has("k") {
             let eta = self.factor(props, "eta", Rgb::ZERO);
             let k = self.factor(props, "k", Rgb::ONE);
@@ -332,7 +326,7 @@ impl<'a> Lowering<'a, '_> {
         }
         let Some((_, eta, k)) = tables::metal(name) else {
             let message = format!("the metal \"{}\" is not known", crate::values::shown(name));
-            self.d.push(
+            self.out.d.push(
                 Diagnostic::error("mitsuba::unknown-value", span, message)
                     .guess(name, tables::METALS.iter().map(|(n, ..)| *n)),
             );
@@ -347,7 +341,7 @@ impl<'a> Lowering<'a, '_> {
             ColorInput::Constant(color) => ColorInput::Constant(color / exterior),
             texture if exterior == 1.0 => texture,
             texture => {
-                self.d.push(
+                self.out.d.push(
                     Diagnostic::warning(
                         "mitsuba::unsupported-property",
                         &props.node.span,

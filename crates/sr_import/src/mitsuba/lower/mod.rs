@@ -8,7 +8,6 @@ mod color;
 mod emitter;
 mod film;
 mod group;
-mod jobs;
 mod material;
 mod principled;
 mod sensor;
@@ -20,15 +19,12 @@ mod texture;
 use std::collections::{HashMap, HashSet};
 use std::path::PathBuf;
 
-use sr_scene::{
-    CameraDesc, Diagnostic, Diagnostics, GroupDesc, InstanceDesc, LightDesc, MaterialDesc, MaterialId,
-    SceneDesc, Settings, ShapeDesc, Span, TextureDesc,
-};
+use sr_scene::{Diagnostic, Diagnostics, MaterialId, SceneDesc, Span};
 
-use crate::node::{Child, Node};
-use crate::props::Props;
+use crate::assembly::Assembly;
+use crate::mitsuba::node::{Child, Node};
+use crate::mitsuba::props::Props;
 use crate::values::shown;
-use jobs::{ImageSlot, PendingMesh};
 
 /// What a tree needs to be understood.
 #[derive(Clone, Debug, Default)]
@@ -45,25 +41,14 @@ pub fn lower(root: &Node, origin: &Origin, d: &mut Diagnostics) -> Option<SceneD
     lowering.collect_ids(root);
     lowering.collect_other_names(root);
     lowering.scene(root);
-    lowering.finish(root)
+    lowering.out.finish(&root.span)
 }
 
 /// The description as it grows.
 struct Lowering<'a, 'd> {
     origin: &'a Origin,
-    d: &'d mut Diagnostics,
+    out: Assembly<'d>,
     ids: HashMap<&'a str, &'a Node>,
-    camera: Option<CameraDesc>,
-    settings: Settings,
-    images: Vec<ImageSlot>,
-    textures: Vec<TextureDesc>,
-    materials: Vec<MaterialDesc>,
-    material_spans: Vec<Span>,
-    shapes: Vec<ShapeDesc>,
-    groups: Vec<GroupDesc>,
-    instances: Vec<InstanceDesc>,
-    lights: Vec<LightDesc>,
-    meshes: Vec<PendingMesh>,
     /// Objects that were lowered already, by the address of their node.
     materials_done: HashMap<usize, MaterialId>,
     textures_done: HashMap<usize, sr_scene::ColorInput>,
@@ -85,19 +70,8 @@ impl<'a, 'd> Lowering<'a, 'd> {
     fn new(origin: &'a Origin, d: &'d mut Diagnostics) -> Self {
         Self {
             origin,
-            d,
+            out: Assembly::new(origin.directories.clone(), d),
             ids: HashMap::new(),
-            camera: None,
-            settings: Settings::default(),
-            images: Vec::new(),
-            textures: Vec::new(),
-            materials: Vec::new(),
-            material_spans: Vec::new(),
-            shapes: Vec::new(),
-            groups: Vec::new(),
-            instances: Vec::new(),
-            lights: Vec::new(),
-            meshes: Vec::new(),
             materials_done: HashMap::new(),
             textures_done: HashMap::new(),
             groups_done: HashMap::new(),
@@ -132,7 +106,7 @@ impl<'a, 'd> Lowering<'a, 'd> {
         if !std::ptr::eq(first, node) {
             let message =
                 format!("the id \"{}\" is given to {} and to {}", shown(id), first.title(), node.title());
-            self.d.push(
+            self.out.d.push(
                 Diagnostic::warning("mitsuba::duplicate-id", span, message)
                     .consequence("references to it mean the first one"),
             );
@@ -148,7 +122,7 @@ impl<'a, 'd> Lowering<'a, 'd> {
         let found = self.ids.get(reference.id.as_str()).copied();
         if found.is_none() {
             let message = format!("there is no object with the id \"{}\"", shown(&reference.id));
-            self.d.push(
+            self.out.d.push(
                 Diagnostic::error("mitsuba::unresolved-reference", &reference.span, message)
                     .guess(&reference.id, self.ids.keys().copied()),
             );
@@ -173,7 +147,7 @@ impl<'a, 'd> Lowering<'a, 'd> {
             let node = match child {
                 Child::Node(node) => node,
                 Child::Reference(reference) => {
-                    self.d.push(
+                    self.out.d.push(
                         Diagnostic::warning(
                             "mitsuba::unused-child",
                             &reference.span,
@@ -196,14 +170,14 @@ impl<'a, 'd> Lowering<'a, 'd> {
                 "integrator" => integrators.push(node),
                 _ => {
                     let message = format!("{} has no meaning here", node.title());
-                    self.d.push(
+                    self.out.d.push(
                         Diagnostic::warning("mitsuba::unused-child", &node.span, message)
                             .consequence("it is ignored"),
                     );
                 }
             }
         }
-        props.finish(self.d);
+        props.finish(self.out.d);
         self.integrators(&integrators);
         self.sensors(&sensors);
         self.report_media(root);
@@ -221,7 +195,7 @@ impl<'a, 'd> Lowering<'a, 'd> {
     }
 
     fn warn_medium(&mut self, node: &Node) {
-        self.d.push(
+        self.out.d.push(
             Diagnostic::warning(
                 "mitsuba::unsupported-medium",
                 &node.span,
@@ -231,42 +205,9 @@ impl<'a, 'd> Lowering<'a, 'd> {
         );
     }
 
-    fn finish(mut self, root: &Node) -> Option<SceneDesc> {
-        self.load_meshes(&root.span);
-        let images = self.load_images();
-        let camera = match self.camera.take() {
-            Some(camera) => camera,
-            None => {
-                self.d.push(
-                    Diagnostic::warning("mitsuba::no-sensor", &root.span, "the scene has no sensor")
-                        .consequence("a camera that sees the whole scene along -Z is used"),
-                );
-                self.default_camera(&root.span)
-            }
-        };
-        let scene = SceneDesc {
-            camera,
-            settings: self.settings,
-            images,
-            textures: self.textures,
-            materials: self.materials,
-            shapes: self.shapes,
-            groups: self.groups,
-            instances: self.instances,
-            lights: self.lights,
-        };
-        if self.d.has_errors() {
-            return None;
-        }
-        let spans = self.material_spans;
-        let found = sr_scene::validate(&scene, |id| spans.get(id.0 as usize).cloned().unwrap_or_default());
-        self.d.list.extend(found);
-        (!self.d.has_errors()).then_some(scene)
-    }
-
     /// Reports a plugin that does not exist or is not supported.
     fn unknown_plugin(&mut self, node: &Node, known: &[&str], consequence: &str) {
-        self.d.push(
+        self.out.d.push(
             Diagnostic::warning(
                 "mitsuba::unsupported-plugin",
                 &node.span,

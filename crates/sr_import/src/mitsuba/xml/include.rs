@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 use sr_scene::{Diagnostic, Span};
 
 use super::elements::{self, Kind};
-use super::{MAX_DEPTH, Reader, read_text, syntax};
+use super::{MAX_DEPTH, Reader, syntax};
 use crate::files;
-use crate::node::Node;
-use crate::values::{Attributes, shown};
+use crate::mitsuba::attributes::Attributes;
+use crate::mitsuba::node::Node;
+use crate::values::shown;
 
 /// More files are refused.
 const MAX_INCLUDES: usize = 256;
@@ -46,8 +47,8 @@ impl Reader<'_> {
                 "more than {MAX_INCLUDES} files are included, or more than {MAX_DEPTH} within another"
             ));
         }
-        let text =
-            read_text(&path).map_err(|reason| format!("cannot include {}: {reason}", path.display()))?;
+        let text = files::read_text(&path)
+            .map_err(|reason| format!("cannot include {}: {reason}", path.display()))?;
         let source = self.diagnostics.sources.add(path.display().to_string(), &*text);
         let document = match syntax::parse(source, &text) {
             Ok(document) => document,

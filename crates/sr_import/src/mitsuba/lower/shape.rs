@@ -6,12 +6,11 @@ use sr_scene::{Diagnostic, Emission, Geometry, Rgb, ShapeDesc};
 
 use super::Lowering;
 use super::color::Role;
-use super::jobs::{MeshSource, PendingMesh, ShapeSlot};
 use super::material::{GREY, diffuse};
-use crate::files;
-use crate::mesh::{Format, Placement, Scheme, Subdivision, primitives};
-use crate::node::{Node, Value};
-use crate::props::Props;
+use crate::assembly::MeshSource;
+use crate::mesh::{Convention, Format, Placement, Scheme, Subdivision, primitives};
+use crate::mitsuba::node::{Node, Value};
+use crate::mitsuba::props::Props;
 
 const KNOWN: &[&str] = &[
     "obj",
@@ -45,22 +44,9 @@ impl<'a> Lowering<'a, '_> {
             "instance" => self.instance(node),
             _ => {
                 if let Some((shape, pending)) = self.shape(node) {
-                    let slot = ShapeSlot::Scene(self.shapes.len());
-                    self.shapes.push(shape);
-                    self.add_pending(pending, slot, node);
+                    self.out.add_shape(shape, pending);
                 }
             }
-        }
-    }
-
-    pub(super) fn add_pending(
-        &mut self,
-        pending: Option<(MeshSource, Placement)>,
-        shape: ShapeSlot,
-        node: &Node,
-    ) {
-        if let Some((source, placement)) = pending {
-            self.meshes.push(PendingMesh { shape, source, placement, span: node.span.clone() });
         }
     }
 
@@ -76,7 +62,7 @@ impl<'a> Lowering<'a, '_> {
             [one] => Some(self.material(one)),
             [first, second, ..] => {
                 let message = format!("{} has more than one BSDF", node.title());
-                self.d.push(
+                self.out.d.push(
                     Diagnostic::warning("mitsuba::wrong-nesting", &second.span, message)
                         .consequence("the first one is used"),
                 );
@@ -85,7 +71,7 @@ impl<'a> Lowering<'a, '_> {
         };
         let mut emission = self.emission(&mut props);
         if emission.is_some() && node.kind == "bilinearpatch" {
-            self.d.push(
+            self.out.d.push(
                 Diagnostic::warning("mitsuba::emitting-patch", &node.span, "a bilinear patch cannot emit")
                     .consequence("it is rendered without its emitter"),
             );
@@ -94,7 +80,7 @@ impl<'a> Lowering<'a, '_> {
         for name in ["interior", "exterior"] {
             if let Some(child) = props.child(name)
                 && let Some(medium) = self.resolve(child)
-                && matches!(child, crate::node::Child::Node(_))
+                && matches!(child, crate::mitsuba::node::Child::Node(_))
             {
                 self.warn_medium(medium);
             }
@@ -104,10 +90,10 @@ impl<'a> Lowering<'a, '_> {
                 self.unknown_plugin(inner, &[], "the shape is rendered without it");
             }
         }
-        props.finish(self.d);
+        props.finish(self.out.d);
         // As in Mitsuba, a light that is given no material reflects nothing.
         let by_default = if emission.is_some() { Rgb::ZERO } else { GREY };
-        let material = material.unwrap_or_else(|| self.add_material(diffuse(by_default), node));
+        let material = material.unwrap_or_else(|| self.out.add_material(diffuse(by_default), &node.span));
         let (geometry, pending) = match form {
             Form::Ready(geometry) => (geometry, None),
             Form::Mesh(source, placement) => (Geometry::Mesh(Arc::default()), Some((source, placement))),
@@ -119,7 +105,7 @@ impl<'a> Lowering<'a, '_> {
         let emitters = self.nested(props, "emitter");
         let (&emitter, more) = emitters.split_first()?;
         if let Some(second) = more.first() {
-            self.d.push(
+            self.out.d.push(
                 Diagnostic::warning(
                     "mitsuba::wrong-nesting",
                     &second.span,
@@ -135,7 +121,7 @@ impl<'a> Lowering<'a, '_> {
         let mut props = Props::new(emitter);
         props.ignore(&["sampling_weight"]);
         let radiance = self.color(&mut props, "radiance", Rgb::ONE, Role::Emission);
-        props.finish(self.d);
+        props.finish(self.out.d);
         Some(Emission { radiance })
     }
 
@@ -160,7 +146,7 @@ impl<'a> Lowering<'a, '_> {
                     Some(Value::Mesh(mesh)) => Some(Form::Mesh(MeshSource::Memory(mesh.clone()), placement)),
                     _ => {
                         let message = format!("{} needs a \"mesh\" in memory", node.title());
-                        self.d.push(Diagnostic::error("mitsuba::missing-property", &node.span, message));
+                        self.out.d.push(Diagnostic::error("mitsuba::missing-property", &node.span, message));
                         None
                     }
                 }
@@ -168,7 +154,7 @@ impl<'a> Lowering<'a, '_> {
             "obj" | "ply" | "serialized" => self.mesh_file(node, props),
             "shapegroup" | "instance" => {
                 let message = format!("{} cannot be inside a group", node.title());
-                self.d.push(Diagnostic::error("mitsuba::wrong-nesting", &node.span, message));
+                self.out.d.push(Diagnostic::error("mitsuba::wrong-nesting", &node.span, message));
                 None
             }
             _ => {
@@ -180,28 +166,28 @@ impl<'a> Lowering<'a, '_> {
 
     fn mesh_file(&mut self, node: &'a Node, props: &mut Props<'a>) -> Option<Form> {
         let placement = self.placement(props);
-        let flip = props.boolean("flip_tex_coords", self.d);
+        let flip = props.boolean("flip_tex_coords", self.out.d);
         props.ignore(&["load_materials", "shape_name", "srgb", "vertex_color"]);
         let (format, flip_v) = match node.kind.as_str() {
             // OBJ counts v from the bottom row of an image, and says so in no file.
             "obj" => (Format::Obj, flip.unwrap_or(true)),
             "ply" => (Format::Ply, flip.unwrap_or(false)),
             _ => {
-                let index = props.integer("shape_index", self.d).unwrap_or(0);
+                let index = props.integer("shape_index", self.out.d).unwrap_or(0);
                 let Ok(index) = u32::try_from(index) else {
                     let message = format!("a shape index of {index}");
-                    self.d.push(Diagnostic::error("mitsuba::bad-value", &node.span, message));
+                    self.out.d.push(Diagnostic::error("mitsuba::bad-value", &node.span, message));
                     return None;
                 };
                 (Format::Serialized { index }, flip.unwrap_or(false))
             }
         };
-        let Some((name, _)) = props.string("filename", self.d) else {
+        let Some((name, _)) = props.string("filename", self.out.d) else {
             let message = format!("{} needs a \"filename\"", node.title());
-            self.d.push(Diagnostic::error("mitsuba::missing-property", &node.span, message));
+            self.out.d.push(Diagnostic::error("mitsuba::missing-property", &node.span, message));
             return None;
         };
-        let path = files::find(name, &self.origin.directories);
+        let path = self.out.find(name);
         Some(Form::Mesh(MeshSource::File { path, format, flip_v }, placement))
     }
 
@@ -209,11 +195,12 @@ impl<'a> Lowering<'a, '_> {
         let subdivision = self.subdivision(props);
         Placement {
             subdivision,
-            to_world: props.transform("to_world", self.d),
-            face_normals: props.boolean("face_normals", self.d).unwrap_or(false),
-            flip_normals: props.boolean("flip_normals", self.d).unwrap_or(false),
-            max_smooth_angle: props.float("max_smooth_angle", self.d).map(f32::to_radians),
+            to_world: props.transform("to_world", self.out.d),
+            face_normals: props.boolean("face_normals", self.out.d).unwrap_or(false),
+            flip_normals: props.boolean("flip_normals", self.out.d).unwrap_or(false),
+            max_smooth_angle: props.float("max_smooth_angle", self.out.d).map(f32::to_radians),
             flat: false,
+            convention: Convention::Mitsuba,
             // Known when all textures are.
             colors: false,
         }
@@ -222,7 +209,7 @@ impl<'a> Lowering<'a, '_> {
     /// `subdivide`, how often, and `scheme`: of our own.
     fn subdivision(&mut self, props: &mut Props<'a>) -> Option<Subdivision> {
         let levels = self.count(props, props.node, "subdivide", 0);
-        let scheme = match props.string("scheme", self.d) {
+        let scheme = match props.string("scheme", self.out.d) {
             None | Some(("loop", _)) => Scheme::Loop,
             Some(("catmull_clark", _)) => Scheme::CatmullClark,
             Some((other, span)) => {

@@ -7,8 +7,8 @@ use sr_scene::{Diagnostic, LightDesc, Rgb};
 
 use super::Lowering;
 use super::color::Role;
-use crate::node::Node;
-use crate::props::Props;
+use crate::mitsuba::node::Node;
+use crate::mitsuba::props::Props;
 
 /// When and where the sun is looked at.
 struct Moment {
@@ -66,32 +66,32 @@ impl Moment {
 impl<'a> Lowering<'a, '_> {
     /// The lights of a clear sky.
     pub(super) fn sunsky(&mut self, node: &'a Node, props: &mut Props<'a>) -> Vec<LightDesc> {
-        let to_world = props.transform("to_world", self.d);
+        let to_world = props.transform("to_world", self.out.d);
         let Some(world_from_light) = self.rotation_of(to_world, "a sky", node) else { return Vec::new() };
-        let turbidity = props.float("turbidity", self.d).unwrap_or(3.0);
+        let turbidity = props.float("turbidity", self.out.d).unwrap_or(3.0);
         let albedo = self.constant_color(props, "albedo", Rgb::splat(0.3), Role::Factor);
-        let given = props.vector("sun_direction", self.d);
+        let given = props.vector("sun_direction", self.out.d);
         let moment = self.moment(props);
         let sun_direction = match given.map(DVec3::try_normalize) {
             Some(Some(direction)) => world_from_light.transpose() * direction,
             Some(None) => {
                 let message = "the direction of the sun cannot be zero";
-                self.d.push(Diagnostic::error("mitsuba::bad-value", &node.span, message));
+                self.out.d.push(Diagnostic::error("mitsuba::bad-value", &node.span, message));
                 return Vec::new();
             }
             None => moment.sun(),
         };
         if sun_direction.z < 0.0 {
-            self.d.push(
+            self.out.d.push(
                 Diagnostic::warning("mitsuba::night", &node.span, "the sun is below the horizon")
                     .consequence("the model knows no night: this light is black"),
             );
         }
-        let sky_scale = props.float("sky_scale", self.d).unwrap_or(1.0);
-        let sun_scale = props.float("sun_scale", self.d).unwrap_or(1.0);
-        let aperture = props.float("sun_aperture", self.d).unwrap_or(0.5358).to_radians();
-        if let Some(true) = props.boolean("complex_sun", self.d) {
-            self.d.push(
+        let sky_scale = props.float("sky_scale", self.out.d).unwrap_or(1.0);
+        let sun_scale = props.float("sun_scale", self.out.d).unwrap_or(1.0);
+        let aperture = props.float("sun_aperture", self.out.d).unwrap_or(0.5358).to_radians();
+        if let Some(true) = props.boolean("complex_sun", self.out.d) {
+            self.out.d.push(
                 Diagnostic::warning(
                     "mitsuba::unsupported-property",
                     &node.span,
@@ -133,14 +133,15 @@ impl<'a> Lowering<'a, '_> {
         let whole = |props: &mut Props<'a>, name, default, d: &mut _| -> i64 {
             props.integer(name, d).unwrap_or(default).clamp(-10_000, 10_000)
         };
-        let mut number = |name, default: f64| f64::from(props.float(name, self.d).unwrap_or(default as f32));
+        let mut number =
+            |name, default: f64| f64::from(props.float(name, self.out.d).unwrap_or(default as f32));
         let hour = number("hour", 15.0) + (number("minute", 0.0) + number("second", 0.0) / 60.0) / 60.0;
         let (longitude, latitude) = (number("longitude", 139.6917), number("latitude", 35.6894));
         let timezone = number("timezone", 9.0);
         Moment {
-            year: whole(props, "year", 2010, self.d),
-            month: whole(props, "month", 7, self.d),
-            day: whole(props, "day", 10, self.d),
+            year: whole(props, "year", 2010, self.out.d),
+            month: whole(props, "month", 7, self.out.d),
+            day: whole(props, "day", 10, self.out.d),
             hour,
             longitude,
             latitude,
@@ -157,7 +158,7 @@ impl<'a> Lowering<'a, '_> {
             return Some(rotation);
         }
         let message = format!("the transform of {what} is more than a rotation and a scale");
-        self.d.push(Diagnostic::error("mitsuba::bad-transform", &node.span, message));
+        self.out.d.push(Diagnostic::error("mitsuba::bad-transform", &node.span, message));
         None
     }
 }

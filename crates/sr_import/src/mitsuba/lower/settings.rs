@@ -3,8 +3,8 @@
 use sr_scene::{Diagnostic, Settings};
 
 use super::Lowering;
-use crate::node::Node;
-use crate::props::Props;
+use crate::mitsuba::node::Node;
+use crate::mitsuba::props::Props;
 
 const KNOWN: &[&str] = &["path", "direct"];
 
@@ -12,7 +12,7 @@ impl<'a> Lowering<'a, '_> {
     pub(super) fn integrators(&mut self, nodes: &[&'a Node]) {
         let Some((&first, more)) = nodes.split_first() else { return };
         if let Some(second) = more.first() {
-            self.d.push(
+            self.out.d.push(
                 Diagnostic::warning(
                     "mitsuba::several-integrators",
                     &second.span,
@@ -26,13 +26,13 @@ impl<'a> Lowering<'a, '_> {
 
     fn integrator(&mut self, node: &'a Node) {
         let mut props = Props::new(node);
-        self.settings.span = node.span.clone();
-        if let Some(hide) = props.boolean("hide_emitters", self.d) {
-            self.settings.hide_emitters = hide;
+        self.out.settings.span = node.span.clone();
+        if let Some(hide) = props.boolean("hide_emitters", self.out.d) {
+            self.out.settings.hide_emitters = hide;
         }
         match node.kind.as_str() {
             "direct" => {
-                self.settings.max_depth = Some(2);
+                self.out.settings.max_depth = Some(2);
                 // How direct light is sampled changes the noise only.
                 props.ignore(&["emitter_samples", "bsdf_samples", "shading_samples", "strict_normals"]);
             }
@@ -62,12 +62,14 @@ impl<'a> Lowering<'a, '_> {
                 }
             }
         }
-        props.finish(self.d);
+        props.finish(self.out.d);
     }
 
     fn nested_kinds(&self, node: &'a Node) -> Vec<&'a str> {
         let nested = node.children.iter().filter_map(|child| match child {
-            crate::node::Child::Node(inner) if inner.class == "integrator" => Some(inner.kind.as_str()),
+            crate::mitsuba::node::Child::Node(inner) if inner.class == "integrator" => {
+                Some(inner.kind.as_str())
+            }
             _ => None,
         });
         nested.collect()
@@ -75,25 +77,25 @@ impl<'a> Lowering<'a, '_> {
 
     fn depths(&mut self, props: &mut Props<'a>, node: &Node) {
         let Settings { roulette_depth, .. } = Settings::default();
-        let max_depth = props.integer("max_depth", self.d).unwrap_or(-1);
-        let rr_depth = props.integer("rr_depth", self.d);
-        self.settings.max_depth = match max_depth {
+        let max_depth = props.integer("max_depth", self.out.d).unwrap_or(-1);
+        let rr_depth = props.integer("rr_depth", self.out.d);
+        self.out.settings.max_depth = match max_depth {
             -1 => None,
             depth => match u32::try_from(depth) {
                 Ok(depth) => Some(depth),
                 Err(_) => {
                     let message = format!("a maximum depth of {depth}: -1 (unbounded) or more is possible");
-                    self.d.push(Diagnostic::error("mitsuba::bad-value", &node.span, message));
+                    self.out.d.push(Diagnostic::error("mitsuba::bad-value", &node.span, message));
                     None
                 }
             },
         };
-        self.settings.roulette_depth = match rr_depth.map(u32::try_from) {
+        self.out.settings.roulette_depth = match rr_depth.map(u32::try_from) {
             None => roulette_depth,
             Some(Ok(depth)) => Some(depth),
             Some(Err(_)) => {
                 let message = "the depth of Russian roulette cannot be negative";
-                self.d.push(Diagnostic::error("mitsuba::bad-value", &node.span, message));
+                self.out.d.push(Diagnostic::error("mitsuba::bad-value", &node.span, message));
                 roulette_depth
             }
         };
@@ -102,16 +104,16 @@ impl<'a> Lowering<'a, '_> {
     /// A sensor's sampler: only how many samples it takes matters here.
     pub(super) fn sampler(&mut self, node: &'a Node) {
         let mut props = Props::new(node);
-        if let Some(count) = props.integer("sample_count", self.d) {
+        if let Some(count) = props.integer("sample_count", self.out.d) {
             match u32::try_from(count) {
-                Ok(spp) if spp > 0 => self.settings.spp = spp,
+                Ok(spp) if spp > 0 => self.out.settings.spp = spp,
                 _ => {
                     let message = format!("a sample count of {count}: at least 1 is needed");
-                    self.d.push(Diagnostic::error("mitsuba::bad-value", &node.span, message));
+                    self.out.d.push(Diagnostic::error("mitsuba::bad-value", &node.span, message));
                 }
             }
         }
         props.ignore(&["seed", "dimension", "jitter", "scramble", "strength"]);
-        props.finish(self.d);
+        props.finish(self.out.d);
     }
 }

@@ -10,9 +10,10 @@ use sr_scene::{Diagnostic, SourceId, Span};
 use super::alias::Alias;
 use super::elements::{self, Kind, ValueKind};
 use super::{MAX_DEPTH, Reader, value};
-use crate::node::{Child, Node, Property, Reference, Value, canonical_name};
-use crate::transform;
-use crate::values::{Attributes, shown};
+use crate::mitsuba::attributes::Attributes;
+use crate::mitsuba::node::{Child, Node, Property, Reference, Value, canonical_name};
+use crate::mitsuba::transform;
+use crate::values::shown;
 
 /// Where the start tag of an element is.
 pub fn start_tag(source: SourceId, element: Element<'_, '_>) -> Span {

@@ -21,12 +21,11 @@ mod syntax;
 mod value;
 
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use sr_scene::{Diagnostic, Diagnostics, Span};
 
-use crate::files;
-use crate::node::Node;
+use crate::mitsuba::node::Node;
 use crate::values::shown;
 use elements::Kind;
 use include::Includes;
@@ -109,12 +108,4 @@ fn is_legacy(version: Option<&str>, span: &Span, diagnostics: &mut Diagnostics) 
         diagnostics.push(Diagnostic::warning(code, span, message).consequence(consequence));
     }
     major.is_some_and(|major| major < 2)
-}
-
-/// The text of a scene file.
-pub fn read_text(path: &Path) -> Result<String, String> {
-    let bytes = files::read(path, files::MAX_SCENE_BYTES)?;
-    let text = String::from_utf8(bytes)
-        .map_err(|e| format!("byte {} is not UTF-8 text", e.utf8_error().valid_up_to()))?;
-    Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
 }

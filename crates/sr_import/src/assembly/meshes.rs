@@ -1,22 +1,15 @@
-//! Files, read in parallel once everything that names them is known; each file is read once.
+//! Meshes: read in parallel once all are known, each file once, then placed in parallel.
 
 use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use rayon::prelude::*;
-use sr_scene::{Diagnostic, Geometry, Image, MeshDesc, Pixels, ShapeDesc, Span, TextureDesc};
+use sr_scene::{Diagnostic, Geometry, MeshDesc, ShapeDesc, Span, TextureDesc};
 
-use super::Lowering;
+use super::Assembly;
 use crate::files;
-use crate::images::{self, Decode};
 use crate::mesh::{self, Format, Placement, RawMesh, Report};
-
-/// An image of the scene, read or to be read.
-pub(super) enum ImageSlot {
-    Ready(Arc<Image>),
-    File { path: PathBuf, decode: Decode, span: Span },
-}
 
 /// A mesh of the scene, to be read and placed.
 pub(super) struct PendingMesh {
@@ -27,63 +20,32 @@ pub(super) struct PendingMesh {
     pub span: Span,
 }
 
+/// A place in the description.
 #[derive(Clone, Copy)]
 pub(super) enum ShapeSlot {
     Scene(usize),
     Group(usize, usize),
 }
 
+/// Where a mesh comes from.
 #[derive(Clone)]
-pub(super) enum MeshSource {
+pub enum MeshSource {
+    /// It is there.
     Memory(Arc<MeshDesc>),
-    File { path: PathBuf, format: Format, flip_v: bool },
+    /// It is read at the end.
+    File {
+        /// As [`Assembly::find`] has it.
+        path: PathBuf,
+        /// How to read it.
+        format: Format,
+        /// Is v counted from the other end?
+        flip_v: bool,
+    },
 }
 
 type FileKey = (PathBuf, Format, bool);
 
-impl Lowering<'_, '_> {
-    pub(super) fn image_in_memory(&mut self, image: &Arc<Image>) -> u32 {
-        self.images.push(ImageSlot::Ready(image.clone()));
-        self.images.len() as u32 - 1
-    }
-
-    pub(super) fn image_file(&mut self, name: &str, decode: Decode, span: &Span) -> u32 {
-        let path = files::find(name, &self.origin.directories);
-        let known = self.images.iter().position(
-            |slot| matches!(slot, ImageSlot::File { path: p, decode: d, .. } if *p == path && *d == decode),
-        );
-        known.unwrap_or_else(|| {
-            self.images.push(ImageSlot::File { path, decode, span: span.clone() });
-            self.images.len() - 1
-        }) as u32
-    }
-
-    pub(super) fn load_images(&mut self) -> Vec<Arc<Image>> {
-        let slots = std::mem::take(&mut self.images);
-        let loaded: Vec<Result<Arc<Image>, String>> = slots
-            .par_iter()
-            .map(|slot| match slot {
-                ImageSlot::Ready(image) => check_image(image).map(|()| image.clone()),
-                ImageSlot::File { path, decode, .. } => images::load(path, *decode).map(Arc::new),
-            })
-            .collect();
-        let mut out = Vec::with_capacity(loaded.len());
-        for (slot, result) in slots.iter().zip(loaded) {
-            match (result, slot) {
-                (Ok(image), _) => out.push(image),
-                (Err(reason), ImageSlot::File { path, span, .. }) => {
-                    let error = self.file_error("mitsuba::bad-image", span, "image", path, &reason);
-                    self.d.push(error);
-                }
-                (Err(reason), ImageSlot::Ready(image)) => {
-                    let message = format!("the image \"{}\" cannot be used: {reason}", image.name);
-                    self.d.push(Diagnostic::error("mitsuba::bad-image", &Span::default(), message));
-                }
-            }
-        }
-        out
-    }
-
+impl Assembly<'_> {
     pub(super) fn load_meshes(&mut self, span: &Span) {
         let mut pending = std::mem::take(&mut self.meshes);
         let colors = self.textures.iter().any(|t| matches!(t, TextureDesc::MeshColor { .. }));
@@ -102,14 +64,14 @@ impl Lowering<'_, '_> {
                 Err(reason) => {
                     let error = match &mesh.source {
                         MeshSource::File { path, .. } => {
-                            self.file_error("mitsuba::bad-mesh", &mesh.span, "mesh", path, &reason)
+                            files::error("file::bad-mesh", &mesh.span, "mesh", path, &reason)
                         }
                         MeshSource::Memory(_) => {
                             let message = format!(
                                 "the mesh \"{}\" cannot be used: {reason}",
                                 source_name(&mesh.source)
                             );
-                            Diagnostic::error("mitsuba::bad-mesh", &mesh.span, message)
+                            Diagnostic::error("file::bad-mesh", &mesh.span, message)
                         }
                     };
                     self.d.push(error);
@@ -117,13 +79,13 @@ impl Lowering<'_, '_> {
             }
         }
         self.report_meshes(
-            "mitsuba::degenerate-triangles",
+            "scene::degenerate-triangles",
             &degenerate,
             "triangles without area",
             "they are left out",
         );
         self.report_meshes(
-            "mitsuba::bad-normals",
+            "scene::bad-normals",
             &bad_normals,
             "normals without a direction",
             "they are computed from the triangles",
@@ -142,7 +104,7 @@ impl Lowering<'_, '_> {
         self.groups.iter_mut().for_each(|group| group.shapes.retain(full));
         if before > 0 && self.shapes.is_empty() && self.instances.is_empty() && !self.d.has_errors() {
             let message = "nothing is left of the scene: no triangle of its shapes has an area";
-            self.d.push(Diagnostic::error("mitsuba::nothing-left", span, message));
+            self.d.push(Diagnostic::error("scene::nothing-left", span, message));
         }
     }
 
@@ -246,20 +208,4 @@ fn source_name(source: &MeshSource) -> String {
         MeshSource::Memory(mesh) => mesh.name.clone(),
         MeshSource::File { path, .. } => path.display().to_string(),
     }
-}
-
-/// An image that was not made here may be anything.
-fn check_image(image: &Image) -> Result<(), String> {
-    let (channels, len) = match &image.pixels {
-        Pixels::U8 { channels, data } => (*channels, data.len()),
-        Pixels::F32 { channels, data } => (*channels, data.len()),
-    };
-    let texels = u64::from(image.width) * u64::from(image.height);
-    if ![1, 3, 4].contains(&channels) || texels == 0 || texels * u64::from(channels) != len as u64 {
-        return Err(format!(
-            "{len} values are not {} × {} texels of {channels} channels",
-            image.width, image.height
-        ));
-    }
-    Ok(())
 }

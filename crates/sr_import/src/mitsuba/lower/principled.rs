@@ -8,7 +8,7 @@ use sr_scene::{
 
 use super::Lowering;
 use super::material::GREY;
-use crate::props::Props;
+use crate::mitsuba::props::Props;
 
 impl<'a> Lowering<'a, '_> {
     pub(super) fn principled(&mut self, props: &mut Props<'a>) -> MaterialDesc {
@@ -68,15 +68,15 @@ impl<'a> Lowering<'a, '_> {
             roughness: self.scalar(props, "roughness", 1.0),
             specular: self.scalar(props, "specular", 1.0),
             specular_color: self.factor(props, "specular_color", Rgb::ONE),
-            ior: props.float("ior", self.d).unwrap_or(1.5),
+            ior: props.float("ior", self.out.d).unwrap_or(1.5),
             clearcoat: self.scalar(props, "clearcoat", 0.0),
             clearcoat_roughness: self.scalar(props, "clearcoat_roughness", 0.0),
             sheen_color: self.factor(props, "sheen_color", Rgb::ZERO),
             sheen_roughness: self.scalar(props, "sheen_roughness", 0.0),
             transmission: self.scalar(props, "transmission", 0.0),
-            thin: props.boolean("thin", self.d).unwrap_or(true),
+            thin: props.boolean("thin", self.out.d).unwrap_or(true),
             anisotropy: self.scalar(props, "anisotropy", 0.0),
-            anisotropy_rotation: props.float("anisotropy_rotation", self.d).unwrap_or(0.0).to_radians(),
+            anisotropy_rotation: props.float("anisotropy_rotation", self.out.d).unwrap_or(0.0).to_radians(),
         })
     }
 
@@ -120,15 +120,15 @@ impl<'a> Lowering<'a, '_> {
     }
 
     fn rate(&mut self, props: &mut Props<'a>, name: &'static str) -> f32 {
-        props.float(name, self.d).unwrap_or(1.0)
+        props.float(name, self.out.d).unwrap_or(1.0)
     }
 
     /// `eta`, or `specular`, which stands for it; media that do not bend light at all cannot transmit.
     fn principled_eta(&mut self, props: &mut Props<'a>, transmits: bool) -> f32 {
-        let (eta, specular) = (props.float("eta", self.d), props.float("specular", self.d));
+        let (eta, specular) = (props.float("eta", self.out.d), props.float("specular", self.out.d));
         if eta.is_some() && specular.is_some() {
             let message = format!("{} has both \"eta\" and \"specular\"", props.node.title());
-            self.d.push(
+            self.out.d.push(
                 Diagnostic::warning("mitsuba::conflict", &props.node.span, message)
                     .consequence("\"eta\" is used"),
             );

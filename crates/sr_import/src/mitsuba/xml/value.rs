@@ -3,8 +3,9 @@
 use glam::DVec3;
 
 use super::elements::ValueKind;
-use crate::node::{SpectrumValue, Value};
-use crate::values::{self, Attributes, shown};
+use crate::mitsuba::attributes::Attributes;
+use crate::mitsuba::node::{SpectrumValue, Value};
+use crate::values::{self, shown};
 
 /// Reads a value; `Err` is a sentence.
 pub fn read(kind: ValueKind, attributes: &mut Attributes<'_, '_>) -> Result<Value, String> {

@@ -3,17 +3,13 @@
 use sr_scene::{Crop, Diagnostic, FilmDesc, FilterDesc, MAX_FILM_PIXELS};
 
 use super::Lowering;
-use crate::node::Node;
-use crate::props::Props;
+use crate::assembly::default_film;
+use crate::mitsuba::node::Node;
+use crate::mitsuba::props::Props;
 
 const FILTERS: &[&str] = &["box", "tent", "gaussian", "mitchell", "catmullrom", "lanczos", "blackmanharris"];
 /// Mitsuba's default filter, cut at four standard deviations.
 const DEFAULT_FILTER: FilterDesc = FilterDesc::Gaussian { stddev: 0.5, radius: 2.0 };
-
-/// Mitsuba's default film.
-pub(super) fn default_film() -> FilmDesc {
-    FilmDesc { width: 768, height: 576, crop: None, filter: DEFAULT_FILTER, sample_border: false }
-}
 
 impl<'a> Lowering<'a, '_> {
     pub(super) fn film(&mut self, props: &mut Props<'a>) -> FilmDesc {
@@ -26,11 +22,11 @@ impl<'a> Lowering<'a, '_> {
         film.width = self.count(&mut props, node, "width", film.width);
         film.height = self.count(&mut props, node, "height", film.height);
         film.sample_border = props
-            .boolean("sample_border", self.d)
-            .or(props.boolean("high_quality_edges", self.d))
+            .boolean("sample_border", self.out.d)
+            .or(props.boolean("high_quality_edges", self.out.d))
             .unwrap_or(false);
         film.crop = self.crop(&mut props, node, &film);
-        props.unsupported(&["size"], "the whole film is rendered", self.d);
+        props.unsupported(&["size"], "the whole film is rendered", self.out.d);
         // How a file is written is decided when it is written.
         props.ignore(&[
             "banner",
@@ -51,7 +47,7 @@ impl<'a> Lowering<'a, '_> {
         if !matches!(node.kind.as_str(), "hdrfilm" | "ldrfilm") {
             props.use_all();
         }
-        props.finish(self.d);
+        props.finish(self.out.d);
         film
     }
 
@@ -73,14 +69,14 @@ impl<'a> Lowering<'a, '_> {
         name: &'static str,
         default: u32,
     ) -> u32 {
-        let Some(count) = props.integer(name, self.d) else { return default };
+        let Some(count) = props.integer(name, self.out.d) else { return default };
         u32::try_from(count).unwrap_or_else(|_| {
             let (code, limit) = match node.class.as_str() {
                 "film" => ("scene::film-size", MAX_FILM_PIXELS),
                 _ => ("mitsuba::bad-value", u32::MAX.into()),
             };
             let message = format!("\"{name}\" is {count}; 0 to {limit} is possible");
-            self.d.push(Diagnostic::error(code, &node.span, message));
+            self.out.d.push(Diagnostic::error(code, &node.span, message));
             default
         })
     }
@@ -88,20 +84,20 @@ impl<'a> Lowering<'a, '_> {
     fn filter(&mut self, node: &'a Node) -> FilterDesc {
         let mut props = Props::new(node);
         let filter = match node.kind.as_str() {
-            "box" => FilterDesc::Box { radius: props.float("radius", self.d).unwrap_or(0.5) },
-            "tent" => FilterDesc::Tent { radius: props.float("radius", self.d).unwrap_or(1.0) },
+            "box" => FilterDesc::Box { radius: props.float("radius", self.out.d).unwrap_or(0.5) },
+            "tent" => FilterDesc::Tent { radius: props.float("radius", self.out.d).unwrap_or(1.0) },
             "gaussian" => {
-                let stddev = props.float("stddev", self.d).unwrap_or(0.5);
+                let stddev = props.float("stddev", self.out.d).unwrap_or(0.5);
                 FilterDesc::Gaussian { stddev, radius: 4.0 * stddev }
             }
             "mitchell" => FilterDesc::Mitchell {
-                b: props.float("b", self.d).unwrap_or(1.0 / 3.0),
-                c: props.float("c", self.d).unwrap_or(1.0 / 3.0),
+                b: props.float("b", self.out.d).unwrap_or(1.0 / 3.0),
+                c: props.float("c", self.out.d).unwrap_or(1.0 / 3.0),
             },
             "catmullrom" => FilterDesc::CatmullRom,
             "lanczos" => FilterDesc::Lanczos { lobes: self.count(&mut props, node, "lobes", 3) },
             "blackmanharris" => {
-                FilterDesc::BlackmanHarris { radius: props.float("radius", self.d).unwrap_or(1.5) }
+                FilterDesc::BlackmanHarris { radius: props.float("radius", self.out.d).unwrap_or(1.5) }
             }
             _ => {
                 self.unknown_plugin(node, FILTERS, "a Gaussian of standard deviation 0.5 pixels is used");
@@ -109,7 +105,7 @@ impl<'a> Lowering<'a, '_> {
                 DEFAULT_FILTER
             }
         };
-        props.finish(self.d);
+        props.finish(self.out.d);
         filter
     }
 }

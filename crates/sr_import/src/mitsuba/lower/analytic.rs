@@ -4,20 +4,20 @@ use glam::{DMat3, DVec3};
 use sr_scene::{Diagnostic, Geometry};
 
 use super::Lowering;
-use crate::node::Node;
-use crate::props::Props;
+use crate::mitsuba::node::Node;
+use crate::mitsuba::props::Props;
 
 impl<'a> Lowering<'a, '_> {
     pub(super) fn sphere(&mut self, node: &'a Node, props: &mut Props<'a>) -> Geometry {
-        let center = props.vector("center", self.d).unwrap_or(DVec3::ZERO);
-        let radius = f64::from(props.float("radius", self.d).unwrap_or(1.0));
-        let to_world = props.transform("to_world", self.d);
-        let flip_normals = props.boolean("flip_normals", self.d).unwrap_or(false);
+        let center = props.vector("center", self.out.d).unwrap_or(DVec3::ZERO);
+        let radius = f64::from(props.float("radius", self.out.d).unwrap_or(1.0));
+        let to_world = props.transform("to_world", self.out.d);
+        let flip_normals = props.boolean("flip_normals", self.out.d).unwrap_or(false);
         let linear = DMat3::from_mat4(to_world);
         let scale = linear.x_axis.length();
         let frame = DMat3::from_cols(linear.x_axis / scale, linear.y_axis / scale, linear.z_axis / scale);
         if !is_orthonormal(frame) {
-            self.d.push(
+            self.out.d.push(
                 Diagnostic::warning(
                     "mitsuba::sphere-transform",
                     &node.span,
@@ -35,12 +35,12 @@ impl<'a> Lowering<'a, '_> {
     }
 
     pub(super) fn disk(&mut self, node: &'a Node, props: &mut Props<'a>) -> Geometry {
-        let to_world = props.transform("to_world", self.d);
-        let flip_normals = props.boolean("flip_normals", self.d).unwrap_or(false);
+        let to_world = props.transform("to_world", self.out.d);
+        let flip_normals = props.boolean("flip_normals", self.out.d).unwrap_or(false);
         let linear = DMat3::from_mat4(to_world);
         let (u, v) = (linear.x_axis, linear.y_axis);
         if u.dot(v).abs() > 1e-4 * u.length() * v.length() {
-            self.d.push(
+            self.out.d.push(
                 Diagnostic::warning(
                     "mitsuba::disk-transform",
                     &node.span,
@@ -58,11 +58,11 @@ impl<'a> Lowering<'a, '_> {
     }
 
     pub(super) fn cylinder(&mut self, node: &'a Node, props: &mut Props<'a>) -> Geometry {
-        let p0 = props.vector("p0", self.d).unwrap_or(DVec3::ZERO);
-        let p1 = props.vector("p1", self.d).unwrap_or(DVec3::Z);
-        let radius = f64::from(props.float("radius", self.d).unwrap_or(1.0));
-        let to_world = props.transform("to_world", self.d);
-        let flip_normals = props.boolean("flip_normals", self.d).unwrap_or(false);
+        let p0 = props.vector("p0", self.out.d).unwrap_or(DVec3::ZERO);
+        let p1 = props.vector("p1", self.out.d).unwrap_or(DVec3::Z);
+        let radius = f64::from(props.float("radius", self.out.d).unwrap_or(1.0));
+        let to_world = props.transform("to_world", self.out.d);
+        let flip_normals = props.boolean("flip_normals", self.out.d).unwrap_or(false);
         // A zero length stays one: it is refused when the scene is validated.
         let length = (p1 - p0).length();
         let axis = (p1 - p0).try_normalize().unwrap_or(DVec3::Z);
@@ -71,7 +71,7 @@ impl<'a> Lowering<'a, '_> {
         let (across, along) = (linear.x_axis.length(), linear.z_axis.length());
         let frame = DMat3::from_cols(linear.x_axis / across, linear.y_axis / across, linear.z_axis / along);
         if !is_orthonormal(frame) {
-            self.d.push(
+            self.out.d.push(
                 Diagnostic::warning(
                     "mitsuba::cylinder-transform",
                     &node.span,
@@ -91,11 +91,11 @@ impl<'a> Lowering<'a, '_> {
 
     /// `p00`, `p10`, `p01`, `p11`: by default the square of `rectangle`.
     pub(super) fn patch(&mut self, props: &mut Props<'a>) -> Geometry {
-        let to_world = props.transform("to_world", self.d);
-        let flip_normals = props.boolean("flip_normals", self.d).unwrap_or(false);
+        let to_world = props.transform("to_world", self.out.d);
+        let flip_normals = props.boolean("flip_normals", self.out.d).unwrap_or(false);
         let corners = [("p00", -1.0, -1.0), ("p10", 1.0, -1.0), ("p01", -1.0, 1.0), ("p11", 1.0, 1.0)];
         let corners = corners.map(|(name, x, y)| {
-            let corner = props.vector(name, self.d).unwrap_or(DVec3::new(x, y, 0.0));
+            let corner = props.vector(name, self.out.d).unwrap_or(DVec3::new(x, y, 0.0));
             to_world.transform_point3(corner).as_vec3()
         });
         Geometry::Patch { corners, flip_normals }

@@ -5,7 +5,7 @@ use std::collections::hash_map::Entry;
 
 use sr_scene::{Diagnostic, Diagnostics, Span};
 
-use crate::node::{Child, Node, OtherName};
+use crate::mitsuba::node::{Child, Node, OtherName};
 use crate::values::shown;
 
 /// The object `id` is also called `new`.

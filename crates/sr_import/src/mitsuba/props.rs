@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec3};
 use sr_scene::{Diagnostic, Diagnostics, Span};
 
-use crate::node::{Child, Node, Property, Value, canonical_name};
+use crate::mitsuba::node::{Child, Node, Property, Value, canonical_name};
 use crate::values::shown;
 
 /// A node being read. Names are given in today's spelling and match every generation's.

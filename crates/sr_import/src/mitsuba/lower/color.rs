@@ -4,8 +4,8 @@ use sr_scene::{ColorInput, Diagnostic, Rgb, ScalarInput, Span};
 
 use super::Lowering;
 use crate::files;
-use crate::node::{SpectrumValue, Value};
-use crate::props::{Props, finite_color};
+use crate::mitsuba::node::{SpectrumValue, Value};
+use crate::mitsuba::props::{Props, finite_color};
 use crate::{spectrum, values};
 
 /// What a color is for: it decides how a spectrum is seen.
@@ -46,9 +46,9 @@ impl<'a> Lowering<'a, '_> {
             Value::Integer(v) => Some(glam::DVec3::splat(*v as f64)),
             Value::Rgb(color) => Some(*color),
             Value::Spectrum(spectrum) => self.spectrum(spectrum, role, &property.span),
-            _ => props.wrong_type(property, "a color, a spectrum, a number or a texture", self.d),
+            _ => props.wrong_type(property, "a color, a spectrum, a number or a texture", self.out.d),
         }?;
-        finite_color(color, name, &property.span, self.d).map(ColorInput::Constant)
+        finite_color(color, name, &property.span, self.out.d).map(ColorInput::Constant)
     }
 
     /// A color that cannot be textured.
@@ -63,7 +63,7 @@ impl<'a> Lowering<'a, '_> {
             ColorInput::Constant(color) => color,
             ColorInput::Texture(_) => {
                 let message = format!("\"{name}\" of {} cannot be a texture", props.node.title());
-                self.d.push(
+                self.out.d.push(
                     Diagnostic::warning("mitsuba::texture-not-possible", &props.node.span, message)
                         .consequence(format!(
                             "the constant {}, {}, {} is used",
@@ -99,13 +99,13 @@ impl<'a> Lowering<'a, '_> {
             SpectrumValue::Uniform(v) => convert(&|_| *v),
             SpectrumValue::Samples(samples) => convert(&|w| spectrum::interpolate(samples, w)),
             SpectrumValue::File(name) => {
-                let path = files::find(name, &self.origin.directories);
+                let path = self.out.find(name);
                 let read = files::read(&path, files::MAX_SCENE_BYTES)
                     .and_then(|bytes| values::spectrum_file(&String::from_utf8_lossy(&bytes)));
                 match read {
                     Ok(samples) => convert(&|w| spectrum::interpolate(&samples, w)),
                     Err(reason) => {
-                        self.d.push(self.file_error(
+                        self.out.d.push(files::error(
                             "mitsuba::bad-spectrum",
                             span,
                             "spectrum",
@@ -120,37 +120,18 @@ impl<'a> Lowering<'a, '_> {
                 if *temperature <= 0.0 || temperature.is_nan() {
                     let message =
                         format!("a black body of {temperature} K: the temperature has to be positive");
-                    self.d.push(Diagnostic::error("mitsuba::bad-value", span, message));
+                    self.out.d.push(Diagnostic::error("mitsuba::bad-value", span, message));
                     return None;
                 }
                 convert(&|w| scale * spectrum::blackbody(*temperature, w))
             }
         };
         if matches!(role, Role::Emission) && color.min_element() < 0.0 && color.max_element() > 0.0 {
-            self.d.push(
+            self.out.d.push(
                 Diagnostic::warning("mitsuba::out-of-gamut", span, "a spectrum that sRGB cannot show")
                     .consequence("negative parts of its color are set to 0"),
             );
         }
         Some(if color.max_element() > 0.0 { color.max(glam::DVec3::ZERO) } else { color })
-    }
-
-    /// A file that could not be used, with a guess at its name if it is missing.
-    pub(super) fn file_error(
-        &self,
-        code: &'static str,
-        span: &Span,
-        what: &str,
-        path: &std::path::Path,
-        reason: &str,
-    ) -> Diagnostic {
-        let error =
-            Diagnostic::error(code, span, format!("cannot read the {what} {}: {reason}", path.display()));
-        if path.exists() {
-            return error;
-        }
-        let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-        let siblings = files::siblings(path);
-        error.guess(&name, siblings.iter().map(String::as_str))
     }
 }

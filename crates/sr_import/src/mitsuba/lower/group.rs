@@ -3,10 +3,9 @@
 use glam::{Affine3A, DMat4};
 use sr_scene::{Diagnostic, GroupDesc, InstanceDesc};
 
-use super::jobs::ShapeSlot;
 use super::{Lowering, key};
-use crate::node::Node;
-use crate::props::Props;
+use crate::mitsuba::node::Node;
+use crate::mitsuba::props::Props;
 
 /// Instances that the scene may have when those inside groups are counted wherever their group is shown.
 const MAX_INSTANCES: usize = 1 << 20;
@@ -27,8 +26,8 @@ impl<'a> Lowering<'a, '_> {
         if let Some(&done) = self.groups_done.get(&key(node)) {
             return done;
         }
-        let index = self.groups.len();
-        self.groups.push(GroupDesc { shapes: Vec::new() });
+        let index = self.out.groups.len();
+        self.out.groups.push(GroupDesc { shapes: Vec::new() });
         self.inner_groups.push(Vec::new());
         self.groups_done.insert(key(node), index as u32);
         self.open.insert(key(node));
@@ -45,7 +44,7 @@ impl<'a> Lowering<'a, '_> {
                 _ => self.shape_in_group(index, child),
             }
         }
-        props.finish(self.d);
+        props.finish(self.out.d);
         self.open.remove(&key(node));
         index as u32
     }
@@ -53,7 +52,7 @@ impl<'a> Lowering<'a, '_> {
     fn shape_in_group(&mut self, group: usize, node: &'a Node) {
         let Some((mut shape, pending)) = self.shape(node) else { return };
         if shape.emission.take().is_some() {
-            self.d.push(
+            self.out.d.push(
                 Diagnostic::warning(
                     "mitsuba::emitter-in-group",
                     &node.span,
@@ -62,9 +61,7 @@ impl<'a> Lowering<'a, '_> {
                 .consequence("it is rendered without its emitter"),
             );
         }
-        let slot = ShapeSlot::Group(group, self.groups[group].shapes.len());
-        self.groups[group].shapes.push(shape);
-        self.add_pending(pending, slot, node);
+        self.out.add_shape_to_group(group, shape, pending);
     }
 
     /// An instance of the scene itself: the group, and all that is placed inside it, at any depth.
@@ -76,7 +73,7 @@ impl<'a> Lowering<'a, '_> {
             if self.placements > MAX_INSTANCES {
                 if self.placements == MAX_INSTANCES + 1 {
                     let message = format!("more than {MAX_INSTANCES} instances, those inside groups counted");
-                    self.d.push(Diagnostic::error("mitsuba::too-many-instances", &node.span, message));
+                    self.out.d.push(Diagnostic::error("mitsuba::too-many-instances", &node.span, message));
                 }
                 return;
             }
@@ -85,27 +82,27 @@ impl<'a> Lowering<'a, '_> {
                 group: inner.group,
                 outer_from_inner: outer_from_inner * inner.outer_from_inner,
             }));
-            if self.groups[group as usize].shapes.is_empty() {
+            if self.out.groups[group as usize].shapes.is_empty() {
                 continue;
             }
             let world_from_group = Affine3A::from_mat4(outer_from_inner.as_mat4());
-            self.instances.push(InstanceDesc { group, world_from_group, span: node.span.clone() });
+            self.out.instances.push(InstanceDesc { group, world_from_group, span: node.span.clone() });
         }
     }
 
     fn placed(&mut self, node: &'a Node) -> Option<Inner> {
         let mut props = Props::new(node);
-        let outer_from_inner = props.transform("to_world", self.d);
+        let outer_from_inner = props.transform("to_world", self.out.d);
         let groups = self.nested(&mut props, "shape");
-        props.finish(self.d);
+        props.finish(self.out.d);
         let [group] = groups[..] else {
             let message = format!("{} needs one shape group, not {}", node.title(), groups.len());
-            self.d.push(Diagnostic::error("mitsuba::wrong-nesting", &node.span, message));
+            self.out.d.push(Diagnostic::error("mitsuba::wrong-nesting", &node.span, message));
             return None;
         };
         if group.kind != "shapegroup" {
             let message = format!("an instance shows a shape group, not {}", group.title());
-            self.d.push(Diagnostic::error("mitsuba::wrong-nesting", &node.span, message));
+            self.out.d.push(Diagnostic::error("mitsuba::wrong-nesting", &node.span, message));
             return None;
         }
         let is_cycle = self.open.contains(&key(group));
@@ -114,7 +111,7 @@ impl<'a> Lowering<'a, '_> {
                 true => "a shape group that contains itself".into(),
                 false => format!("shape groups inside one another, more than {MAX_DEPTH} deep"),
             };
-            self.d.push(Diagnostic::error("mitsuba::wrong-nesting", &node.span, message));
+            self.out.d.push(Diagnostic::error("mitsuba::wrong-nesting", &node.span, message));
             return None;
         }
         Some(Inner { group: self.group(group), outer_from_inner })

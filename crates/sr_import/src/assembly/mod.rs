@@ -1,0 +1,166 @@
+//! A scene description as it grows, whatever the format it is read from.
+//!
+//! In: cameras, materials, textures, lights and shapes, one by one, with the files that they name. Out: a
+//! [`SceneDesc`], if nothing was an error. Files are read at the end, in parallel, each once.
+//!
+//! - `images`, `meshes`: what is read at the end.
+//! - `camera`: what a scene without a camera is seen by.
+
+mod camera;
+mod images;
+mod meshes;
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use sr_scene::{
+    CameraDesc, ColorInput, Diagnostic, Diagnostics, GroupDesc, Image, InstanceDesc, LightDesc, MaterialDesc,
+    MaterialId, SceneDesc, Settings, ShapeDesc, Span, TextureDesc, TextureId,
+};
+
+use crate::files;
+use crate::images::Decode;
+use crate::mesh::Placement;
+
+pub use camera::default_film;
+use images::ImageSlot;
+pub use meshes::MeshSource;
+use meshes::{PendingMesh, ShapeSlot};
+
+/// The description as it grows.
+pub struct Assembly<'d> {
+    /// What there is to say.
+    pub d: &'d mut Diagnostics,
+    /// Where files are looked for, in this order.
+    pub directories: Vec<PathBuf>,
+    /// Where the image is taken from.
+    pub camera: Option<CameraDesc>,
+    /// What the file asks the renderer for.
+    pub settings: Settings,
+    /// Groups of shapes; meshes are added by [`Assembly::add_shape_to_group`].
+    pub groups: Vec<GroupDesc>,
+    /// Placements of groups.
+    pub instances: Vec<InstanceDesc>,
+    /// Lights that are not shapes.
+    pub lights: Vec<LightDesc>,
+    images: Vec<ImageSlot>,
+    textures: Vec<TextureDesc>,
+    materials: Vec<MaterialDesc>,
+    material_spans: Vec<Span>,
+    shapes: Vec<ShapeDesc>,
+    meshes: Vec<PendingMesh>,
+}
+
+impl<'d> Assembly<'d> {
+    /// An empty scene; files are looked for in `directories`.
+    pub fn new(directories: Vec<PathBuf>, d: &'d mut Diagnostics) -> Self {
+        Self {
+            d,
+            directories,
+            camera: None,
+            settings: Settings::default(),
+            groups: Vec::new(),
+            instances: Vec::new(),
+            lights: Vec::new(),
+            images: Vec::new(),
+            textures: Vec::new(),
+            materials: Vec::new(),
+            material_spans: Vec::new(),
+            shapes: Vec::new(),
+            meshes: Vec::new(),
+        }
+    }
+
+    /// Where a file is that the scene names.
+    pub fn find(&self, name: &str) -> PathBuf {
+        files::find(name, &self.directories)
+    }
+
+    /// An image that is there already; its index.
+    pub fn image_in_memory(&mut self, image: &Arc<Image>) -> u32 {
+        self.images.push(ImageSlot::Ready(image.clone()));
+        self.images.len() as u32 - 1
+    }
+
+    /// An image to be read; its index. The same file, decoded alike, is the same image.
+    pub fn image_file(&mut self, name: &str, decode: Decode, span: &Span) -> u32 {
+        let path = self.find(name);
+        let known = self.images.iter().position(
+            |slot| matches!(slot, ImageSlot::File { path: p, decode: d, .. } if *p == path && *d == decode),
+        );
+        known.unwrap_or_else(|| {
+            self.images.push(ImageSlot::File { path, decode, span: span.clone() });
+            self.images.len() - 1
+        }) as u32
+    }
+
+    /// A texture, and how to use it.
+    pub fn add_texture(&mut self, texture: TextureDesc) -> ColorInput {
+        self.textures.push(texture);
+        ColorInput::Texture(TextureId(self.textures.len() as u32 - 1))
+    }
+
+    /// A material, described at `span`.
+    pub fn add_material(&mut self, desc: MaterialDesc, span: &Span) -> MaterialId {
+        self.materials.push(desc);
+        self.material_spans.push(span.clone());
+        MaterialId(self.materials.len() as u32 - 1)
+    }
+
+    /// A shape of the scene itself. With a `mesh`, its geometry is read and placed at the end.
+    pub fn add_shape(&mut self, shape: ShapeDesc, mesh: Option<(MeshSource, Placement)>) {
+        self.add_pending(mesh, ShapeSlot::Scene(self.shapes.len()), &shape.span);
+        self.shapes.push(shape);
+    }
+
+    /// A shape of `self.groups[group]`.
+    pub fn add_shape_to_group(
+        &mut self,
+        group: usize,
+        shape: ShapeDesc,
+        mesh: Option<(MeshSource, Placement)>,
+    ) {
+        self.add_pending(mesh, ShapeSlot::Group(group, self.groups[group].shapes.len()), &shape.span);
+        self.groups[group].shapes.push(shape);
+    }
+
+    fn add_pending(&mut self, mesh: Option<(MeshSource, Placement)>, shape: ShapeSlot, span: &Span) {
+        if let Some((source, placement)) = mesh {
+            self.meshes.push(PendingMesh { shape, source, placement, span: span.clone() });
+        }
+    }
+
+    /// Reads what is still to be read, and validates. `span` is the scene's own.
+    pub fn finish(mut self, span: &Span) -> Option<SceneDesc> {
+        self.load_meshes(span);
+        let images = self.load_images();
+        let camera = match self.camera.take() {
+            Some(camera) => camera,
+            None => {
+                self.d.push(
+                    Diagnostic::warning("scene::no-camera", span, "the scene has no camera")
+                        .consequence("a camera that sees the whole scene along -Z is used"),
+                );
+                self.default_camera(span)
+            }
+        };
+        let scene = SceneDesc {
+            camera,
+            settings: self.settings,
+            images,
+            textures: self.textures,
+            materials: self.materials,
+            shapes: self.shapes,
+            groups: self.groups,
+            instances: self.instances,
+            lights: self.lights,
+        };
+        if self.d.has_errors() {
+            return None;
+        }
+        let spans = self.material_spans;
+        let found = sr_scene::validate(&scene, |id| spans.get(id.0 as usize).cloned().unwrap_or_default());
+        self.d.list.extend(found);
+        (!self.d.has_errors()).then_some(scene)
+    }
+}
