@@ -245,7 +245,7 @@ fn area_light(
             Some(AreaLight::sphere(center, radius, frame, flip_normals, emission.radiance, textures))
         }
         &sr_scene::Geometry::Disk { center, u_axis, v_axis, flip_normals } => {
-            let facing = u_axis.cross(v_axis).normalize_or_zero();
+            let facing = u_axis.as_dvec3().cross(v_axis.as_dvec3()).normalize_or_zero().as_vec3();
             let normal = if flip_normals { -facing } else { facing };
             Some(AreaLight::disk(center, u_axis, v_axis, normal, emission.radiance, textures))
         }

@@ -8,6 +8,7 @@ pub mod desc;
 pub mod diagnostic;
 pub mod film;
 pub mod image;
+mod inputs;
 pub mod light;
 pub mod material;
 mod places;

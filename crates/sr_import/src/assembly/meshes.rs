@@ -54,9 +54,13 @@ impl Assembly<'_> {
         let mut placed = place_all(&pending, &files);
         let mut degenerate = Vec::new();
         let mut bad_normals = Vec::new();
+        let mut empty = Vec::new();
         for (mesh, result) in pending.iter().zip(placed.drain(..)) {
             match result {
                 Ok((desc, report)) => {
+                    if desc.triangles.is_empty() && report.degenerate == 0 {
+                        empty.push((1, mesh));
+                    }
                     degenerate.extend((report.degenerate > 0).then_some((report.degenerate, mesh)));
                     bad_normals.extend((report.bad_normals > 0).then_some((report.bad_normals, mesh)));
                     self.set_geometry(mesh.shape, Geometry::Mesh(desc));
@@ -77,6 +81,17 @@ impl Assembly<'_> {
                     self.d.push(error);
                 }
             }
+        }
+        if let [(_, first), ..] = empty[..] {
+            let name = source_name(&first.source);
+            let message = match empty.len() {
+                1 => format!("{name} has no triangles"),
+                n => format!("{n} meshes have no triangles; the first is {name}"),
+            };
+            self.d.push(
+                Diagnostic::warning("scene::empty-mesh", &first.span, message)
+                    .consequence("nothing is seen of it"),
+            );
         }
         self.report_meshes(
             "scene::degenerate-triangles",

@@ -1,12 +1,16 @@
 //! The camera.
 
-use super::Check;
+use super::{Check, degrees, extent};
 use crate::camera::Lens;
 use crate::diagnostic::Span;
 use crate::{CameraDesc, Projection};
 
 /// Apertures of more blades are disks.
 const MAX_BLADES: u32 = 1000;
+/// In radians, about 2 seconds of arc: narrower, neighbouring pixels see the same in single precision.
+const NARROWEST: f32 = 1e-5;
+/// In widths and heights of the film.
+const FARTHEST_PRINCIPAL_POINT: f32 = 1000.0;
 
 impl Check<'_> {
     pub(super) fn camera(&mut self, camera: &CameraDesc) {
@@ -17,6 +21,10 @@ impl Check<'_> {
         let [x, y, z] = columns;
         if !m.is_finite() || !(x.cross(y).dot(z).abs() > 1e-6) {
             self.error("scene::bad-transform", span, "the placement of the camera is not invertible");
+        } else if f64::from(m.w_axis.truncate().abs().max_element()) > extent::FARTHEST {
+            let (position, farthest) = (m.w_axis.truncate(), extent::FARTHEST);
+            let message = format!("a camera at {position}: coordinates up to {farthest:e} are possible");
+            self.error("scene::extent", span, message);
         }
         if !(camera.near_clip > 0.0 && camera.far_clip > camera.near_clip) {
             let (near, far) = (camera.near_clip, camera.far_clip);
@@ -27,13 +35,13 @@ impl Check<'_> {
             );
         }
         if let Projection::Perspective { fov, principal_point_offset, lens, .. } = &camera.projection {
-            if !(*fov > 0.0 && *fov < std::f32::consts::PI) {
-                let fov = fov.to_degrees();
-                let message = format!("an angle of view of {fov}° is not between 0° and 180°");
-                self.error("scene::field-of-view", span, message);
-            }
-            if !principal_point_offset.is_finite() {
-                self.error("scene::not-finite", span, "the principal point is not finite");
+            self.field_of_view(*fov, span);
+            if !(principal_point_offset.abs().max_element() <= FARTHEST_PRINCIPAL_POINT) {
+                let message = format!(
+                    "a principal point {} widths and {} heights off: up to {FARTHEST_PRINCIPAL_POINT} is possible",
+                    principal_point_offset.x, principal_point_offset.y
+                );
+                self.error("scene::principal-point", span, message);
             }
             if let Some(lens) = lens {
                 self.lens(lens, span);
@@ -41,13 +49,26 @@ impl Check<'_> {
         }
     }
 
+    pub(super) fn field_of_view(&mut self, fov: f32, span: &Span) {
+        if !(NARROWEST..std::f32::consts::PI).contains(&fov) {
+            let (least, shown) = (f64::from(NARROWEST).to_degrees(), degrees(fov));
+            let message =
+                format!("an angle of view of {shown}: at least {least:.5}° and less than 180° is possible");
+            self.error("scene::field-of-view", span, message);
+        }
+    }
+
     fn lens(&mut self, lens: &Lens, span: &Span) {
         let Lens { aperture_radius, focus_distance, blades, blade_rotation } = *lens;
-        if !(aperture_radius >= 0.0 && aperture_radius.is_finite()) {
-            self.error("scene::aperture", span, format!("an aperture radius of {aperture_radius}"));
+        let longest = extent::FARTHEST as f32;
+        if !(0.0..=longest).contains(&aperture_radius) {
+            let message = format!("an aperture radius of {aperture_radius}: 0 to {longest:e} is possible");
+            self.error("scene::aperture", span, message);
         }
-        if aperture_radius > 0.0 && !(focus_distance > 0.0 && focus_distance.is_finite()) {
-            self.error("scene::focus", span, format!("a focus distance of {focus_distance}"));
+        if aperture_radius > 0.0 && !(focus_distance > 0.0 && focus_distance <= longest) {
+            let message =
+                format!("a focus distance of {focus_distance}: more than 0 and at most {longest:e} is possible");
+            self.error("scene::focus", span, message);
         }
         if !(blades == 0 || (3..=MAX_BLADES).contains(&blades)) {
             let message = format!("an aperture of {blades} blades: 0 (a disk), or 3 to {MAX_BLADES}");

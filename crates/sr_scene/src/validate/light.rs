@@ -4,7 +4,7 @@ use std::f32::consts::PI;
 
 use glam::Vec3;
 
-use super::Check;
+use super::{BRIGHTEST, Check, degrees, extent};
 use crate::diagnostic::{Diagnostic, Span};
 use crate::{IntensityProfile, LightDesc, MAX_PORTALS, Pixels, Portal, SphereMapping};
 
@@ -27,9 +27,7 @@ impl Check<'_> {
             }
             LightDesc::Point { position, intensity, span } => {
                 self.color(*intensity, "intensity", span);
-                if !position.is_finite() {
-                    self.error("scene::not-finite", span, "the position is not finite");
-                }
+                self.position(*position, span);
             }
             LightDesc::Directional { direction, irradiance, span } => {
                 self.color(*irradiance, "irradiance", span);
@@ -44,32 +42,32 @@ impl Check<'_> {
                 }
                 if !(*cutoff_angle > 0.0 && *cutoff_angle <= PI && (0.0..=*cutoff_angle).contains(beam_width))
                 {
-                    let (cutoff, beam) = (cutoff_angle.to_degrees(), beam_width.to_degrees());
+                    let (cutoff, beam) = (degrees(*cutoff_angle), degrees(*beam_width));
                     let message = format!(
-                        "cutoff angle {cutoff}°, beam width {beam}°: 0 ≤ beam ≤ cutoff ≤ 180° is needed"
+                        "cutoff angle {cutoff}, beam width {beam}: 0 ≤ beam ≤ cutoff ≤ 180° is needed"
                     );
                     self.error("scene::spot", span, message);
                 }
                 self.placement(world_from_light.determinant(), "the spot light", span);
+                self.position(world_from_light.w_axis.truncate(), span);
             }
             LightDesc::Projector { world_from_light, irradiance, scale, fov, span, .. } => {
                 self.color_input(irradiance, "irradiance", span);
                 self.scale(*scale, "a projector's scale", span);
                 self.placement(world_from_light.determinant(), "the projector", span);
-                if !(*fov > 0.0 && *fov < PI) {
-                    let message =
-                        format!("a field of view of {}° is not between 0° and 180°", fov.to_degrees());
-                    self.error("scene::fov", span, message);
-                }
+                self.position(world_from_light.w_axis.truncate(), span);
+                self.field_of_view(*fov, span);
             }
             LightDesc::Goniometric { world_from_light, intensity, image, mapping, span } => {
                 self.color(*intensity, "intensity", span);
                 self.sphere_image(*image, *mapping, span);
                 self.placement(world_from_light.determinant(), "the light", span);
+                self.position(world_from_light.w_axis.truncate(), span);
             }
             LightDesc::Profile { world_from_light, intensity, profile, span } => {
                 self.color(*intensity, "intensity", span);
                 self.placement(world_from_light.determinant(), "the light", span);
+                self.position(world_from_light.w_axis.truncate(), span);
                 self.profile(profile, span);
             }
             LightDesc::Sky { turbidity, albedo, sun_direction, scale, world_from_light, span } => {
@@ -85,8 +83,8 @@ impl Check<'_> {
                 self.placement(world_from_light.determinant(), "the sun", span);
                 if !(*aperture > 0.0 && *aperture < PI) {
                     let message = format!(
-                        "the sun fills an angle of {}°: above 0° and below 180° is needed",
-                        aperture.to_degrees()
+                        "the sun fills an angle of {}: above 0° and below 180° is needed",
+                        degrees(*aperture)
                     );
                     self.error("scene::sun", span, message);
                 }
@@ -95,8 +93,17 @@ impl Check<'_> {
     }
 
     fn scale(&mut self, scale: f32, what: &str, span: &Span) {
-        if !(scale >= 0.0 && scale.is_finite()) {
-            self.error("scene::bad-color", span, format!("{what} of {scale}"));
+        if !(0.0..=BRIGHTEST).contains(&scale) {
+            let message = format!("{what} of {scale}: 0 to {BRIGHTEST:e} is possible");
+            self.error("scene::bad-color", span, message);
+        }
+    }
+
+    fn position(&mut self, position: Vec3, span: &Span) {
+        let farthest = extent::FARTHEST;
+        if !(f64::from(position.abs().max_element()) <= farthest && position.is_finite()) {
+            let message = format!("a light at {position}: coordinates up to {farthest:e} are possible");
+            self.error("scene::extent", span, message);
         }
     }
 
@@ -159,6 +166,11 @@ impl Check<'_> {
             || !candelas.iter().all(|c| *c >= 0.0 && c.is_finite())
         {
             self.error("scene::profile", span, format!("{name} lacks intensities, or some are negative"));
+        } else if candelas.iter().all(|&c| c == 0.0) {
+            self.found.push(
+                Diagnostic::warning("scene::profile", span, format!("all intensities of {name} are 0"))
+                    .consequence("the light is black"),
+            );
         }
     }
 

@@ -2,7 +2,16 @@
 
 use super::Check;
 use crate::diagnostic::{Diagnostic, Span};
-use crate::{ColorInput, MaterialDesc, MaterialId, ScalarInput};
+use crate::{ColorInput, MaterialDesc, MaterialId, Rgb, ScalarInput};
+
+/// Relative indices of refraction; beyond, the cosines of what is refracted are rounding errors.
+const INDICES: std::ops::RangeInclusive<f32> = 1e-3..=1e3;
+/// Parts of a metal's index.
+const LARGEST_COMPLEX_INDEX: f32 = 1e4;
+/// At 1, facets point everywhere; beyond this nothing changes any more.
+const ROUGHEST: f32 = 100.0;
+/// A displacement this steep turns every normal into the surface.
+const STEEPEST: f32 = 1e6;
 
 /// Materials nested deeper than this are an error.
 const MAX_MATERIAL_DEPTH: usize = 8;
@@ -129,11 +138,7 @@ impl Check<'_> {
                     self.alpha(&ScalarInput::Constant(*coat_alpha), span);
                 }
                 self.alpha(&ScalarInput::Constant(*alpha), span);
-                if !(*eta >= 1.0 && eta.is_finite()) {
-                    let message =
-                        format!("a relative index of refraction of {eta} of a coat is not at least 1");
-                    self.error("scene::index", span, message);
-                }
+                self.dense_index(*eta, "a relative index of refraction of a coat", span);
                 self.complex_index(eta_k, span);
                 self.albedo(specular_reflectance, "specular_reflectance", span);
             }
@@ -143,11 +148,14 @@ impl Check<'_> {
             MaterialDesc::TwoSided { .. } => {}
             MaterialDesc::Mask { opacity, .. } => self.share(opacity, "scene::opacity", "an opacity", span),
             MaterialDesc::Blend { weight, .. } => self.share(weight, "scene::blend-weight", "a weight", span),
-            MaterialDesc::NormalMap { normal, .. } => self.color_input(normal, "normalmap", span),
+            MaterialDesc::NormalMap { normal, .. } => self.normal_map(normal, span),
             MaterialDesc::BumpMap { scale, texture, .. } => {
                 self.texture_id(*texture, span);
-                if !scale.is_finite() {
-                    self.error("scene::not-finite", span, "the scale of a bump map is not finite");
+                if !(scale.abs() <= STEEPEST) {
+                    let message = format!(
+                        "the scale of a bump map is {scale}: -{STEEPEST:e} to {STEEPEST:e} is possible"
+                    );
+                    self.error("scene::bump-scale", span, message);
                 }
             }
         }
@@ -181,8 +189,10 @@ impl Check<'_> {
 
     fn alpha(&mut self, input: &ScalarInput, span: &Span) {
         match *input {
-            ScalarInput::Constant(alpha) if !(alpha > 0.0 && alpha.is_finite()) => {
-                self.error("scene::alpha", span, format!("a roughness alpha of {alpha} is not positive"));
+            ScalarInput::Constant(alpha) if !(alpha > 0.0 && alpha <= ROUGHEST) => {
+                let message =
+                    format!("a roughness alpha of {alpha}: more than 0 and at most {ROUGHEST} is possible");
+                self.error("scene::alpha", span, message);
             }
             ScalarInput::Constant(_) => {}
             ScalarInput::Texture(id) => self.texture_id(id, span),
@@ -190,12 +200,45 @@ impl Check<'_> {
     }
 
     pub(super) fn eta(&mut self, eta: f32, span: &Span) {
-        if !(eta > 0.0 && eta.is_finite()) {
-            self.error(
-                "scene::index",
-                span,
-                format!("a relative index of refraction of {eta} is not positive"),
-            );
+        if !INDICES.contains(&eta) {
+            let (low, high) = (INDICES.start(), INDICES.end());
+            let message = format!("a relative index of refraction of {eta}: {low} to {high} is possible");
+            self.error("scene::index", span, message);
+        }
+    }
+
+    /// An index of something that is denser than what is around it.
+    pub(super) fn dense_index(&mut self, eta: f32, what: &str, span: &Span) {
+        let high = INDICES.end();
+        if !(1.0..=*high).contains(&eta) {
+            self.error("scene::index", span, format!("{what} of {eta}: 1 to {high} is possible"));
+        }
+    }
+
+    fn normal_map(&mut self, normal: &ColorInput, span: &Span) {
+        match *normal {
+            ColorInput::Texture(id) => self.texture_id(id, span),
+            // Any color is some direction, but only one above the surface is a normal.
+            ColorInput::Constant(color) => {
+                let normal = 2.0 * color - Rgb::ONE;
+                let length = normal.length();
+                if !(length <= 2.0) {
+                    let message = format!(
+                        "a normal map of the color {}, {}, {}: parts of 0 to 1 are possible",
+                        color.x, color.y, color.z
+                    );
+                    self.error("scene::normal-map", span, message);
+                } else if !(normal.z > 1e-3 * length) {
+                    let message = format!(
+                        "a normal map of the color {}, {}, {}, which is no normal above the surface",
+                        color.x, color.y, color.z
+                    );
+                    self.found.push(
+                        Diagnostic::warning("scene::normal-map", span, message)
+                            .consequence("the surface is shaded as if it were seen from inside or edge-on"),
+                    );
+                }
+            }
         }
     }
 
@@ -213,8 +256,18 @@ impl Check<'_> {
 
     fn complex_index(&mut self, eta_k: &Option<(ColorInput, ColorInput)>, span: &Span) {
         if let Some((eta, k)) = eta_k {
-            self.color_input(eta, "eta", span);
-            self.color_input(k, "k", span);
+            for (input, what) in [(eta, "eta"), (k, "k")] {
+                self.color_input(input, what, span);
+                if let ColorInput::Constant(color) = *input
+                    && color.max_element() > LARGEST_COMPLEX_INDEX
+                {
+                    let message = format!(
+                        "{what} is {}, {}, {}: up to {LARGEST_COMPLEX_INDEX} is possible",
+                        color.x, color.y, color.z
+                    );
+                    self.error("scene::index", span, message);
+                }
+            }
         }
     }
 }

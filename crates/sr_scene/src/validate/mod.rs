@@ -4,9 +4,11 @@
 //! without further checks: ids are in range, materials form a tree, every number is finite.
 
 mod camera;
+mod extent;
 mod film;
 mod light;
 mod material;
+mod mesh_color;
 mod principled;
 mod shape;
 mod texture;
@@ -18,7 +20,8 @@ pub use film::MAX_FILM_PIXELS;
 
 /// Checks a whole description. `span_of` says where a material was described.
 pub fn validate(scene: &SceneDesc, span_of: impl Fn(MaterialId) -> Span) -> Vec<Diagnostic> {
-    let mut check = Check { scene, found: Vec::new() };
+    let asked = mesh_color::Asked::by_textures(scene);
+    let mut check = Check { scene, asked, found: Vec::new() };
     check.camera(&scene.camera);
     check.textures();
     for index in 0..scene.materials.len() {
@@ -39,30 +42,27 @@ pub fn validate(scene: &SceneDesc, span_of: impl Fn(MaterialId) -> Span) -> Vec<
             }
         }
     }
-    for instance in &scene.instances {
-        if instance.group as usize >= scene.groups.len() {
-            check.error("scene::bad-id", &instance.span, format!("there is no group {}", instance.group));
-        }
-        let m = instance.world_from_group;
-        if !m.is_finite() || m.matrix3.determinant() == 0.0 {
-            check.error(
-                "scene::bad-transform",
-                &instance.span,
-                "the placement of an instance is not invertible",
-            );
-        }
-    }
+    check.instances();
     for light in &scene.lights {
         check.light(light);
     }
+    check.missing_mesh_colors();
     check.found
 }
 
 /// The largest number in a color: its square, and that of a sum of many, is still one in single precision.
 const BRIGHTEST: f32 = 1e18;
 
+/// An angle in radians as people write it: in degrees, without what single precision added.
+fn degrees(angle: f32) -> String {
+    let rounded = (f64::from(angle).to_degrees() * 1e4).round() / 1e4;
+    format!("{rounded}°")
+}
+
 struct Check<'a> {
     scene: &'a SceneDesc,
+    /// For each texture, which colours of a mesh it asks for.
+    asked: Vec<mesh_color::Asked>,
     found: Vec<Diagnostic>,
 }
 

@@ -65,10 +65,7 @@ impl Check<'_> {
         for (input, name) in units {
             self.within(input, name, 1.0, span);
         }
-        if !(m.ior >= 1.0 && m.ior.is_finite()) {
-            let message = format!("an index of refraction of {} is not at least 1", m.ior);
-            self.error("scene::index", span, message);
-        }
+        self.dense_index(m.ior, "an index of refraction", span);
         if !m.anisotropy_rotation.is_finite() {
             self.error("scene::not-finite", span, "anisotropy_rotation is not finite");
         }

@@ -6,6 +6,7 @@ use crate::{Emission, Geometry, ShapeDesc};
 impl Check<'_> {
     pub(super) fn shape(&mut self, shape: &ShapeDesc) {
         let span = &shape.span;
+        let said_before = self.found.len();
         if shape.material.0 as usize >= self.scene.materials.len() {
             self.error("scene::bad-id", span, format!("there is no material {}", shape.material.0));
         }
@@ -26,7 +27,7 @@ impl Check<'_> {
                 }
             }
             Geometry::Disk { center, u_axis, v_axis, .. } => {
-                let area = u_axis.cross(*v_axis).length();
+                let area = u_axis.as_dvec3().cross(v_axis.as_dvec3()).length();
                 if !(area > 0.0 && area.is_finite() && center.is_finite()) {
                     self.error("scene::disk", span, "a disk without area");
                 }
@@ -75,6 +76,9 @@ impl Check<'_> {
                     self.error("scene::mesh-index", span, message);
                 }
             }
+        }
+        if self.found.len() == said_before {
+            self.extent(shape);
         }
     }
 }

@@ -1,11 +1,15 @@
 //! Textures: ids, colours, transforms, and how they are nested.
 
+use glam::Affine2;
+
 use super::Check;
-use crate::diagnostic::Span;
+use crate::diagnostic::{Diagnostic, Span};
 use crate::{ColorInput, ScalarInput, TextureDesc, TextureId};
 
 /// Textures that one lookup may lead to.
 const MAX_LOOKUPS: u32 = 256;
+/// Beyond this many, single precision does not tell texels of a tile apart.
+const MAX_TILES: f32 = 1e6;
 
 impl Check<'_> {
     pub(super) fn textures(&mut self) {
@@ -76,44 +80,25 @@ impl Check<'_> {
                 (None, span)
             }
         };
-        if to_uv.is_some_and(|to_uv| !to_uv.is_finite()) {
-            self.error("scene::bad-transform", span, "the transform of texture coordinates is not finite");
+        if let Some(to_uv) = to_uv {
+            self.to_uv(to_uv, span);
         }
         (span, inner)
     }
 
-    /// Is a mesh's colour in this input? It needs a mesh, which lights are not.
-    pub(super) fn has_mesh_color(&self, input: &ColorInput) -> bool {
-        let mut open: Vec<TextureId> = Vec::new();
-        let push = |input: &ColorInput, open: &mut Vec<TextureId>| {
-            if let ColorInput::Texture(id) = input {
-                open.push(*id);
-            }
-        };
-        push(input, &mut open);
-        // each texture leads to fewer than this, or it is an error already
-        for _ in 0..MAX_LOOKUPS {
-            let Some(TextureId(id)) = open.pop() else { return false };
-            match self.scene.textures.get(id as usize) {
-                Some(TextureDesc::MeshColor { .. }) => return true,
-                Some(TextureDesc::Checkerboard { color0, color1, .. }) => {
-                    push(color0, &mut open);
-                    push(color1, &mut open);
-                }
-                Some(TextureDesc::Scale { input, factor, .. }) => {
-                    push(input, &mut open);
-                    push(factor, &mut open);
-                }
-                Some(TextureDesc::Mix { color0, color1, weight, .. }) => {
-                    push(color0, &mut open);
-                    push(color1, &mut open);
-                    if let ScalarInput::Texture(id) = weight {
-                        open.push(*id);
-                    }
-                }
-                Some(TextureDesc::Bitmap { .. }) | None => {}
-            }
+    fn to_uv(&mut self, to_uv: &Affine2, span: &Span) {
+        let numbers = to_uv.to_cols_array();
+        if !numbers.iter().all(|x| x.abs() <= MAX_TILES) {
+            let message = format!(
+                "a transform of texture coordinates with numbers that are not within ±{MAX_TILES:e}"
+            );
+            self.error("scene::bad-transform", span, message);
+        } else if to_uv.matrix2.determinant() == 0.0 {
+            let message = "a transform of texture coordinates that is not invertible";
+            self.found.push(
+                Diagnostic::warning("scene::bad-transform", span, message)
+                    .consequence("one line or one point of the texture is seen everywhere"),
+            );
         }
-        false
     }
 }

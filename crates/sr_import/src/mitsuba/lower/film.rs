@@ -1,5 +1,7 @@
 //! Films and pixel filters.
 
+use std::ops::RangeInclusive;
+
 use sr_scene::{Crop, Diagnostic, FilmDesc, FilterDesc, MAX_FILM_PIXELS};
 
 use super::Lowering;
@@ -41,8 +43,15 @@ impl<'a> Lowering<'a, '_> {
             "key",
             "burn",
         ]);
-        if let [filter, ..] = self.nested(&mut props, "rfilter")[..] {
+        let filters = self.nested(&mut props, "rfilter");
+        if let [filter, more @ ..] = &filters[..] {
             film.filter = self.filter(filter);
+            if let [second, ..] = more {
+                self.out.d.push(
+                    Diagnostic::warning("mitsuba::wrong-nesting", &second.span, "a film has one rfilter")
+                        .consequence("the first one is used"),
+                );
+            }
         }
         if !matches!(node.kind.as_str(), "hdrfilm" | "ldrfilm") {
             props.use_all();
@@ -79,6 +88,22 @@ impl<'a> Lowering<'a, '_> {
             self.out.d.push(Diagnostic::error(code, &node.span, message));
             default
         })
+    }
+
+    /// The value, or the nearest that is possible after an error.
+    pub(super) fn in_range(
+        &mut self,
+        name: &str,
+        value: f64,
+        possible: RangeInclusive<f64>,
+        node: &Node,
+    ) -> f64 {
+        if !possible.contains(&value) {
+            let (low, high) = (possible.start(), possible.end());
+            let message = format!("\"{name}\" of {} is {value}; {low} to {high} is possible", node.title());
+            self.out.d.push(Diagnostic::error("mitsuba::bad-value", &node.span, message));
+        }
+        value.clamp(*possible.start(), *possible.end())
     }
 
     fn filter(&mut self, node: &'a Node) -> FilterDesc {

@@ -83,6 +83,12 @@ impl<'a> Lowering<'a, '_> {
                 outer_from_inner: outer_from_inner * inner.outer_from_inner,
             }));
             if self.out.groups[group as usize].shapes.is_empty() {
+                if self.inner_groups[group as usize].is_empty() {
+                    self.out.d.push(
+                        Diagnostic::warning("mitsuba::empty-group", &node.span, "an instance of a group of nothing")
+                            .consequence("nothing is seen of it"),
+                    );
+                }
                 continue;
             }
             let world_from_group = Affine3A::from_mat4(outer_from_inner.as_mat4());

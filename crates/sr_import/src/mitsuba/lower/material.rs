@@ -297,7 +297,15 @@ impl<'a> Lowering<'a, '_> {
     fn ior(&mut self, props: &mut Props<'a>, name: &'static str) -> Option<f64> {
         let property = props.get(name)?;
         let Value::String(text) = &property.value else {
-            return props.float(name, self.out.d).map(f64::from);
+            let index = props.float(name, self.out.d).map(f64::from);
+            return index.filter(|&index| {
+                let is_possible = index > 0.0;
+                if !is_possible {
+                    let message = format!("\"{name}\" of {} is {index}, not positive", props.node.title());
+                    self.out.d.push(Diagnostic::error("scene::index", &property.span, message));
+                }
+                is_possible
+            });
         };
         let known = tables::ior(text);
         if known.is_none() {

@@ -83,7 +83,9 @@ impl<'a> Lowering<'a, '_> {
     /// `alpha` is a slope's root mean square, as in Mitsuba 0.6, which found σ = α / √2 to fit.
     pub(super) fn rough_diffuse(&mut self, props: &mut Props<'a>) -> MaterialDesc {
         props.ignore(&["use_fast_approx"]);
-        let sigma = ScalarInput::Constant(self.constant_alpha(props, "alpha", 0.2) * FRAC_1_SQRT_2);
+        let alpha = self.constant_alpha(props, "alpha", 0.2);
+        let alpha = self.in_range("alpha", alpha.into(), 0.0..=f64::MAX, props.node) as f32;
+        let sigma = ScalarInput::Constant(alpha * FRAC_1_SQRT_2);
         MaterialDesc::OrenNayar { reflectance: self.factor(props, "reflectance", GREY), sigma }
     }
 
@@ -138,6 +140,7 @@ impl<'a> Lowering<'a, '_> {
             (Some(eta), _) => eta,
             // R₀ = 0.08 specular.
             (None, specular) => {
+                let specular = self.in_range("specular", specular.into(), 0.0..=10.0, props.node) as f32;
                 let specular = if transmits && specular == 0.0 { 1e-3 } else { specular };
                 2.0 / (1.0 - (0.08 * specular).sqrt()) - 1.0
             }

@@ -198,12 +198,26 @@ impl<'a> Lowering<'a, '_> {
             to_world: props.transform("to_world", self.out.d),
             face_normals: props.boolean("face_normals", self.out.d).unwrap_or(false),
             flip_normals: props.boolean("flip_normals", self.out.d).unwrap_or(false),
-            max_smooth_angle: props.float("max_smooth_angle", self.out.d).map(f32::to_radians),
+            max_smooth_angle: self.max_smooth_angle(props),
             flat: false,
             convention: Convention::Mitsuba,
             // Known when all textures are.
             colors: false,
         }
+    }
+
+    /// In radians.
+    fn max_smooth_angle(&mut self, props: &mut Props<'a>) -> Option<f32> {
+        let angle = props.float("max_smooth_angle", self.out.d)?;
+        if !(0.0..=180.0).contains(&angle) {
+            let message = format!("\"max_smooth_angle\" is {angle}°; 0° to 180° is possible");
+            self.out.d.push(
+                Diagnostic::warning("mitsuba::bad-value", &props.node.span, message)
+                    .consequence("the normals stay as they are"),
+            );
+            return None;
+        }
+        Some(angle.to_radians())
     }
 
     /// `subdivide`, how often, and `scheme`: of our own.

@@ -1,6 +1,7 @@
 //! Clear skies: `sunsky`, and `sky` and `sun` alone.
 
 use std::f64::consts::{PI, TAU};
+use std::ops::RangeInclusive;
 
 use glam::{DMat3, DVec3};
 use sr_scene::{Diagnostic, LightDesc, Rgb};
@@ -130,19 +131,25 @@ impl<'a> Lowering<'a, '_> {
 
     /// Date, time and place; the defaults are Mitsuba's: an afternoon in July in Tokyo.
     fn moment(&mut self, props: &mut Props<'a>) -> Moment {
-        let whole = |props: &mut Props<'a>, name, default, d: &mut _| -> i64 {
-            props.integer(name, d).unwrap_or(default).clamp(-10_000, 10_000)
+        let mut number = |name, default: f64, possible: RangeInclusive<f64>| {
+            let value = props.float(name, self.out.d).map_or(default, f64::from);
+            self.in_range(name, value, possible, props.node)
         };
-        let mut number =
-            |name, default: f64| f64::from(props.float(name, self.out.d).unwrap_or(default as f32));
-        let hour = number("hour", 15.0) + (number("minute", 0.0) + number("second", 0.0) / 60.0) / 60.0;
-        let (longitude, latitude) = (number("longitude", 139.6917), number("latitude", 35.6894));
-        let timezone = number("timezone", 9.0);
+        let hour = number("hour", 15.0, 0.0..=24.0);
+        let minute = number("minute", 0.0, 0.0..=60.0);
+        let second = number("second", 0.0, 0.0..=60.0);
+        let longitude = number("longitude", 139.6917, -360.0..=360.0);
+        let latitude = number("latitude", 35.6894, -90.0..=90.0);
+        let timezone = number("timezone", 9.0, -24.0..=24.0);
+        let mut whole = |name, default: i64, possible: RangeInclusive<f64>| {
+            let value = props.integer(name, self.out.d).unwrap_or(default);
+            self.in_range(name, value as f64, possible, props.node) as i64
+        };
         Moment {
-            year: whole(props, "year", 2010, self.out.d),
-            month: whole(props, "month", 7, self.out.d),
-            day: whole(props, "day", 10, self.out.d),
-            hour,
+            year: whole("year", 2010, -4000.0..=10_000.0),
+            month: whole("month", 7, 1.0..=12.0),
+            day: whole("day", 10, 1.0..=31.0),
+            hour: hour + (minute + second / 60.0) / 60.0,
             longitude,
             latitude,
             timezone,

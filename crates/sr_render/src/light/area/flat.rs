@@ -1,10 +1,16 @@
 //! Flat pieces of lights: triangles, and pairs of them that are one parallelogram.
 
-use glam::{Vec2, Vec3};
+use glam::{DVec2, DVec3, Vec2, Vec3};
 use sr_sampling::to_solid_angle;
 use sr_sampling::warp::barycentrics;
 
 use super::near::Reach;
+
+/// The product of two edges, whose length is an area: in double precision, as the square of it is not in the range of
+/// single precision for edges of 10¹⁰ units.
+pub(super) fn cross(a: Vec3, b: Vec3) -> DVec3 {
+    a.as_dvec3().cross(b.as_dvec3())
+}
 
 /// One triangle of an emitting mesh: what sampling needs, in one place.
 #[derive(Clone, Copy, Debug)]
@@ -23,7 +29,7 @@ impl Triangle {
     /// A triangle that shines to the side it is anticlockwise from; `uvs` are texture coordinates at its corners.
     pub(crate) fn new(positions: [Vec3; 3], uvs: [Vec2; 3]) -> Self {
         let [a, b, c] = positions;
-        let normal = (b - a).cross(c - a).normalize_or_zero();
+        let normal = cross(b - a, c - a).normalize_or_zero().as_vec3();
         Self { positions, uvs, normal, reach: Reach::of(&positions), pdf_area: 0.0 }
     }
 
@@ -95,10 +101,10 @@ impl Parallelogram {
     /// The coordinates along the edges of a point in the plane, in [0, 1).
     pub fn coordinates_of(&self, p: Vec3) -> Vec2 {
         let [e0, e1] = self.edges;
-        let across = e0.cross(e1);
+        let across = cross(e0, e1);
         let d = p - self.corner;
-        let at = Vec2::new(d.cross(e1).dot(across), e0.cross(d).dot(across)) / across.length_squared();
-        at.clamp(Vec2::ZERO, Vec2::splat(1.0 - f32::EPSILON / 2.0))
+        let at = DVec2::new(cross(d, e1).dot(across), cross(e0, d).dot(across)) / across.length_squared();
+        at.as_vec2().clamp(Vec2::ZERO, Vec2::splat(1.0 - f32::EPSILON / 2.0))
     }
 }
 
@@ -158,7 +164,7 @@ impl Patch {
 
     /// Surface area.
     pub fn area(&self) -> f32 {
-        let parallelogram = self.edges[0].cross(self.edges[1]).length();
+        let parallelogram = cross(self.edges[0], self.edges[1]).length() as f32;
         if self.is_triangle { 0.5 * parallelogram } else { parallelogram }
     }
 }

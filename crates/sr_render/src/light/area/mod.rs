@@ -106,7 +106,7 @@ impl AreaLight {
         radiance: ColorInput,
         textures: &Textures,
     ) -> Self {
-        let area = PI * u_axis.cross(v_axis).length();
+        let area = PI * flat::cross(u_axis, v_axis).length() as f32;
         let form = Form::Disk { center, u_axis, v_axis, normal };
         Self::new(form, radiance, area, textures.average(radiance))
     }
