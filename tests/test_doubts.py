@@ -189,6 +189,7 @@ def test_ctrl_c_is_answered(after):
     code = f"""
         import os, signal, threading, time
         import steradian as sr
+        sr.testing  # imports NumPy, which answers a signal by an ImportError of its own
         def interrupt():
             time.sleep({after})
             os.kill(os.getpid(), signal.SIGINT)

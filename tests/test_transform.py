@@ -17,6 +17,13 @@ def test_products_read_right_to_left():
     assert sr.Transform.translate((1, 2, 3)).matrix @ sr.Transform.scale(2) == both
 
 
+def test_chains_multiply_from_the_right():
+    chained = sr.Transform().translate((1, 2, 3)).rotate((0, 0, 1), 90).scale(2)
+    product = sr.Transform.translate((1, 2, 3)) @ sr.Transform.rotate((0, 0, 1), 90) @ sr.Transform.scale(2)
+    assert chained == product
+    assert point(chained, (1, 0, 0)) == pytest.approx([1, 4, 3])
+
+
 def test_rotations_are_counter_clockwise_in_degrees():
     assert point(sr.Transform.rotate((0, 0, 2), 90), (1, 0, 0)) == pytest.approx([0, 1, 0])
     assert point(sr.Transform.rotate((0, 1, 0), 90), (0, 0, 1)) == pytest.approx([1, 0, 0])

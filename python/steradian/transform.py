@@ -2,22 +2,42 @@
 
 from __future__ import annotations
 
+import functools
 import math
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Generic, ParamSpec
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import ArrayLike
 
 Vector = Sequence[float]
+P = ParamSpec("P")
+
+
+class _chained(Generic[P]):
+    """Makes a transform if asked of the class; of an instance, multiplies it from the right."""
+
+    def __init__(self, make: Callable[P, Transform]) -> None:
+        self.make = make
+
+    def __get__(self, instance: Transform | None, owner: type) -> Callable[P, Transform]:
+        if instance is None:
+            return self.make
+
+        @functools.wraps(self.make)
+        def times(*args: P.args, **kwargs: P.kwargs) -> Transform:
+            return instance @ self.make(*args, **kwargs)
+
+        return times
 
 
 class Transform:
     """An affine map of space, applied to column vectors.
 
-    ``Transform.translate((0, 1, 0)) @ Transform.scale(2)`` scales first. A placement in a scene dictionary
-    may be a Transform or a 4×4 array.
+    ``Transform.translate((0, 1, 0)) @ Transform.scale(2)`` scales first, and so does
+    ``Transform.translate((0, 1, 0)).scale(2)``. A placement in a scene dictionary may be a Transform or
+    a 4×4 array.
 
     >>> import steradian as sr
     >>> (sr.Transform.translate((0, 1, 0)) @ sr.Transform.scale(2)).matrix[1]
@@ -47,14 +67,14 @@ class Transform:
         m.setflags(write=False)
         self.matrix = m
 
-    @staticmethod
+    @_chained
     def translate(by: Vector) -> Transform:
         """Moves by a vector."""
         m = Transform().matrix.copy()
         m[:3, 3] = _vector(by, "translation")
         return Transform(m)
 
-    @staticmethod
+    @_chained
     def scale(by: float | Vector) -> Transform:
         """Scales by one factor, or by one for each axis."""
         import numpy as np
@@ -62,7 +82,7 @@ class Transform:
         factors = [by] * 3 if isinstance(by, int | float) else _vector(by, "scale")
         return Transform(np.diag([*factors, 1.0]))
 
-    @staticmethod
+    @_chained
     def rotate(axis: Vector, angle_deg: float) -> Transform:
         """Turns about an axis through the origin, counter-clockwise seen from its tip; degrees.
 
@@ -81,7 +101,7 @@ class Transform:
         m[:3, :3] += math.sin(angle) * k + (1 - math.cos(angle)) * (k @ k)
         return Transform(m)
 
-    @staticmethod
+    @_chained
     def look_at(origin: Vector, target: Vector, up: Vector = (0, 1, 0)) -> Transform:
         """Places a camera at ``origin``; its view, +Z, is towards ``target``; ``up`` is up in the image."""
         import numpy as np

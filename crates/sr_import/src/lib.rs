@@ -28,6 +28,7 @@ use sr_scene::{Diagnostic, Diagnostics, SceneDesc, Span};
 
 pub use mitsuba::Origin;
 pub use mitsuba::node::{Child, Node, OtherName, Property, Reference, SpectrumValue, Value};
+pub use mitsuba::plugins;
 
 /// How to load a scene file.
 #[derive(Clone, Debug, Default)]

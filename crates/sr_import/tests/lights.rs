@@ -114,10 +114,10 @@ fn what_is_wrong_is_said() {
         (sky("<rgb name=\"albedo\" value=\"2 0 0\"/>"), "albedo is above 1"),
         (sky("<vector name=\"sun_direction\" x=\"0\" y=\"0\" z=\"0\"/>"), "cannot be zero"),
         (sky("<vector name=\"sun_direction\" x=\"0\" y=\"0\" z=\"-1\"/>"), "below the horizon"),
-        (sky("<integer name=\"year\" value=\"99999999999\"/>"), ""),
+        (sky("<integer name=\"year\" value=\"99999999999\"/>"), "-4000 to 10000 is possible"),
         (
             "<emitter type=\"projector\"><float name=\"fov\" value=\"180\"/></emitter>".into(),
-            "a field of view of 180°",
+            "an angle of view of 180°",
         ),
         ("<emitter type=\"ies\"/>".into(), "needs a \"filename\""),
         (

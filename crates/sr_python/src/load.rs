@@ -6,6 +6,7 @@ use std::time::Instant;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use sr_import::{LoadOptions, Origin};
+use sr_render::CompileError;
 use sr_scene::{Diagnostic, Diagnostics, SceneDesc, Span};
 
 use crate::job::Job;
@@ -76,7 +77,11 @@ fn compiled(desc: Option<SceneDesc>, mut diagnostics: Diagnostics, start: Instan
     let scene = desc.and_then(|desc| match sr_render::Scene::compile(&desc) {
         Ok(scene) => Some(Scene::new(&desc, scene)),
         Err(error) => {
-            diagnostics.push(Diagnostic::error("scene::compile", &Span::default(), error.to_string()));
+            let span = match &error {
+                CompileError::Material(error) => desc.material_span(error.material()),
+                CompileError::Geometry(_) => Span::default(),
+            };
+            diagnostics.push(Diagnostic::error("scene::compile", &span, error.to_string()));
             None
         }
     });

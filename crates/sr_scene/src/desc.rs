@@ -28,6 +28,8 @@ pub struct SceneDesc {
     pub textures: Vec<TextureDesc>,
     /// Materials, referred to by [`MaterialId`].
     pub materials: Vec<MaterialDesc>,
+    /// Where each material was described; nowhere for those beyond the end.
+    pub material_spans: Vec<Span>,
     /// Shapes, each in world space.
     pub shapes: Vec<ShapeDesc>,
     /// Shapes that appear only through instances, in a space of their own.
@@ -36,6 +38,13 @@ pub struct SceneDesc {
     pub instances: Vec<InstanceDesc>,
     /// Lights that are not shapes: environment, point, spot, directional.
     pub lights: Vec<LightDesc>,
+}
+
+impl SceneDesc {
+    /// Where a material was described.
+    pub fn material_span(&self, id: MaterialId) -> Span {
+        self.material_spans.get(id.0 as usize).cloned().unwrap_or_default()
+    }
 }
 
 /// What a scene file asks of the integrator and the sampler.

@@ -36,9 +36,9 @@ impl MaterialDesc {
             | Self::ThinDielectric { specular_reflectance, specular_transmittance, .. } => {
                 given([specular_reflectance.into(), specular_transmittance.into()])
             }
-            Self::RoughDielectric {
-                alpha: [x, y], specular_reflectance, specular_transmittance, ..
-            } => given([x.into(), y.into(), specular_reflectance.into(), specular_transmittance.into()]),
+            Self::RoughDielectric { alpha: [x, y], specular_reflectance, specular_transmittance, .. } => {
+                given([x.into(), y.into(), specular_reflectance.into(), specular_transmittance.into()])
+            }
             Self::Conductor { ref eta_k, specular_reflectance } => {
                 let [eta, k] = complex(eta_k);
                 given([eta, k, specular_reflectance.into()])
@@ -112,7 +112,9 @@ impl MaterialDesc {
             Self::TwoSided { front, back } if front == back => vec![front],
             Self::TwoSided { front, back } => vec![front, back],
             Self::Blend { materials, .. } => materials.to_vec(),
-            Self::Mask { inner, .. } | Self::BumpMap { inner, .. } | Self::NormalMap { inner, .. } => vec![inner],
+            Self::Mask { inner, .. } | Self::BumpMap { inner, .. } | Self::NormalMap { inner, .. } => {
+                vec![inner]
+            }
             _ => Vec::new(),
         }
     }

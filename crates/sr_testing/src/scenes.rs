@@ -64,6 +64,7 @@ pub fn diffuse_scene(camera: CameraDesc, albedo: f32) -> SceneDesc {
             MaterialDesc::Diffuse { reflectance: ColorInput::Constant(Rgb::splat(albedo)) },
             MaterialDesc::TwoSided { front: MaterialId(0), back: MaterialId(0) },
         ],
+        material_spans: Vec::new(),
         shapes: Vec::new(),
         groups: Vec::new(),
         instances: Vec::new(),

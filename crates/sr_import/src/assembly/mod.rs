@@ -150,6 +150,7 @@ impl<'d> Assembly<'d> {
             images,
             textures: self.textures,
             materials: self.materials,
+            material_spans: self.material_spans,
             shapes: self.shapes,
             groups: self.groups,
             instances: self.instances,
@@ -158,8 +159,7 @@ impl<'d> Assembly<'d> {
         if self.d.has_errors() {
             return None;
         }
-        let spans = self.material_spans;
-        let found = sr_scene::validate(&scene, |id| spans.get(id.0 as usize).cloned().unwrap_or_default());
+        let found = sr_scene::validate(&scene);
         self.d.list.extend(found);
         (!self.d.has_errors()).then_some(scene)
     }

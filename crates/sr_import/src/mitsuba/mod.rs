@@ -6,6 +6,7 @@
 mod attributes;
 mod lower;
 pub mod node;
+pub mod plugins;
 mod props;
 mod tables;
 mod transform;

@@ -4,11 +4,10 @@
 //! `scene["box"]["bsdf"]`, and diagnostics for what cannot be a scene. What names mean is the importer's business.
 
 mod arrays;
-mod classes;
 
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
-use sr_import::{Child, Node, Property, Reference, SpectrumValue, Value};
+use sr_import::{Child, Node, Property, Reference, SpectrumValue, Value, plugins};
 use sr_scene::{Diagnostic, Diagnostics, Span};
 
 /// Deeper nesting is a dictionary that holds itself, or a mistake.
@@ -118,10 +117,10 @@ impl Reader {
             }
             return Ok(());
         }
-        let Some(class) = classes::of(&kind) else {
+        let Some(class) = plugins::class_of(&kind) else {
             self.diagnostics.push(
                 Diagnostic::error("dict::unknown-type", &span, format!("there is no type \"{kind}\""))
-                    .guess(&kind, classes::kinds()),
+                    .guess(&kind, plugins::all()),
             );
             return Ok(());
         };

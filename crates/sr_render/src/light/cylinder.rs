@@ -51,6 +51,6 @@ pub(super) fn pdf(c: &Cylinder, from: Vec3, p: Vec3) -> f32 {
     let to_light = p - from;
     let across = (to_frame * to_light).truncate().length_squared();
     let squared = to_light.length_squared();
-    let pdf = squared * squared.sqrt() / (angle * c.length * across);
+    let pdf = squared.sqrt() / (angle * c.length) * (squared / across);
     if pdf < f32::INFINITY { pdf } else { 0.0 }
 }

@@ -12,10 +12,10 @@ use super::{Face, Inputs, Materials, Queue, Side, Sources};
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MaterialError {
     /// Too many models, or frames within frames.
-    #[error("material {material} has {count} {what}; at most {most} are possible")]
+    #[error("a material has {count} {what}; at most {most} are possible")]
     TooMany {
-        /// Index of the material.
-        material: u32,
+        /// The material.
+        material: MaterialId,
         /// What there is too much of.
         what: &'static str,
         /// How many there are.
@@ -23,6 +23,15 @@ pub enum MaterialError {
         /// How many there can be.
         most: usize,
     },
+}
+
+impl MaterialError {
+    /// Which material it is about.
+    pub fn material(&self) -> MaterialId {
+        match self {
+            Self::TooMany { material, .. } => *material,
+        }
+    }
 }
 
 /// A surface: what it is seen from the front, and from behind if that differs from the front unturned.
@@ -181,7 +190,11 @@ impl Materials {
     /// `is_turned`: is the normal turned to the viewer already, so that parts need no mirror?
     fn add_parts(&mut self, side: Unfinished, is_turned: bool, material: u32) -> Result<Face, MaterialError> {
         let at_most = |most, what, count| {
-            if count > most { Err(MaterialError::TooMany { material, what, count, most }) } else { Ok(()) }
+            if count > most {
+                Err(MaterialError::TooMany { material: MaterialId(material), what, count, most })
+            } else {
+                Ok(())
+            }
         };
         at_most(MAX_PARTS, "models in one place", side.parts.len())?;
         let mut needs_tangents = false;
@@ -340,6 +353,9 @@ mod tests {
         for id in 0..4 {
             descs.push(MaterialDesc::Blend { weight: HALF, materials: [MaterialId(id), MaterialId(id)] });
         }
-        assert!(matches!(Materials::new(&descs), Err(MaterialError::TooMany { material: 4, count: 16, .. })));
+        assert!(matches!(
+            Materials::new(&descs),
+            Err(MaterialError::TooMany { material: MaterialId(4), count: 16, .. })
+        ));
     }
 }

@@ -66,8 +66,9 @@ impl Check<'_> {
             self.error("scene::aperture", span, message);
         }
         if aperture_radius > 0.0 && !(focus_distance > 0.0 && focus_distance <= longest) {
-            let message =
-                format!("a focus distance of {focus_distance}: more than 0 and at most {longest:e} is possible");
+            let message = format!(
+                "a focus distance of {focus_distance}: more than 0 and at most {longest:e} is possible"
+            );
             self.error("scene::focus", span, message);
         }
         if !(blades == 0 || (3..=MAX_BLADES).contains(&blades)) {

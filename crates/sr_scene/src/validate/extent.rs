@@ -32,20 +32,17 @@ impl Extent {
     }
 
     fn of(geometry: &Geometry) -> Self {
-        let around = |center: Vec3, size: f64| Self {
-            reach: f64::from(center.abs().max_element()) + size,
-            size,
-        };
+        let around =
+            |center: Vec3, size: f64| Self { reach: f64::from(center.abs().max_element()) + size, size };
         match geometry {
             Geometry::Mesh(mesh) => Self::of_points(mesh.positions.iter().copied()),
             Geometry::Sphere { center, radius, .. } => around(*center, (*radius).into()),
             Geometry::Disk { center, u_axis, v_axis, .. } => {
                 around(*center, u_axis.as_dvec3().length().min(v_axis.as_dvec3().length()))
             }
-            Geometry::Cylinder { base, radius, length, .. } => Self {
-                size: radius.min(*length).into(),
-                ..around(*base, (radius + length).into())
-            },
+            Geometry::Cylinder { base, radius, length, .. } => {
+                Self { size: radius.min(*length).into(), ..around(*base, (radius + length).into()) }
+            }
             Geometry::Patch { corners, .. } => Self::of_points(*corners),
         }
     }
@@ -63,7 +60,8 @@ impl Check<'_> {
 
     fn extent_fits(&mut self, Extent { reach, size }: Extent, what: &str, span: &Span) {
         if reach > FARTHEST {
-            let message = format!("{what} reaches to {reach:.2e}; coordinates up to {FARTHEST:e} are possible");
+            let message =
+                format!("{what} reaches to {reach:.2e}; coordinates up to {FARTHEST:e} are possible");
             self.error("scene::extent", span, message);
         } else if size < SMALLEST {
             let message = format!("{what} is {size:.2e} across; {SMALLEST:e} and more can be seen");

@@ -25,10 +25,9 @@ impl Asked {
         let mut asked: Vec<Asked> = Vec::new();
         for texture in &scene.textures {
             let own = match texture {
-                TextureDesc::MeshColor { of, .. } => Asked {
-                    vertices: *of == MeshColorOf::Vertices,
-                    faces: *of == MeshColorOf::Faces,
-                },
+                TextureDesc::MeshColor { of, .. } => {
+                    Asked { vertices: *of == MeshColorOf::Vertices, faces: *of == MeshColorOf::Faces }
+                }
                 _ => Asked::NOTHING,
             };
             asked.push(of_textures(&asked, texture.textures()).and(own));
@@ -69,10 +68,9 @@ impl Check<'_> {
                 open.extend(scene.materials[id.0 as usize].materials());
             }
             let has = match &shape.geometry {
-                Geometry::Mesh(mesh) => Asked {
-                    vertices: !mesh.vertex_colors.is_empty(),
-                    faces: !mesh.face_colors.is_empty(),
-                },
+                Geometry::Mesh(mesh) => {
+                    Asked { vertices: !mesh.vertex_colors.is_empty(), faces: !mesh.face_colors.is_empty() }
+                }
                 _ => Asked::NOTHING,
             };
             let missing = match (asked.vertices && !has.vertices, asked.faces && !has.faces) {
@@ -81,7 +79,8 @@ impl Check<'_> {
                 _ => continue,
             };
             if said.insert(shape.material) {
-                let message = format!("the material asks for colors of {missing}, which the shape does not have");
+                let message =
+                    format!("the material asks for colors of {missing}, which the shape does not have");
                 self.found.push(
                     Diagnostic::warning("scene::no-mesh-color", &shape.span, message)
                         .consequence("they are 0.5 on it"),

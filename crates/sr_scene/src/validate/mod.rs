@@ -18,15 +18,15 @@ use crate::{ColorInput, MaterialId, Rgb, SceneDesc, TextureId};
 
 pub use film::MAX_FILM_PIXELS;
 
-/// Checks a whole description. `span_of` says where a material was described.
-pub fn validate(scene: &SceneDesc, span_of: impl Fn(MaterialId) -> Span) -> Vec<Diagnostic> {
+/// Checks a whole description.
+pub fn validate(scene: &SceneDesc) -> Vec<Diagnostic> {
     let asked = mesh_color::Asked::by_textures(scene);
     let mut check = Check { scene, asked, found: Vec::new() };
     check.camera(&scene.camera);
     check.textures();
     for index in 0..scene.materials.len() {
         let id = MaterialId(index as u32);
-        let span = span_of(id);
+        let span = scene.material_span(id);
         if check.nesting(id, &span, 0) {
             check.material(&scene.materials[index], &span);
         }

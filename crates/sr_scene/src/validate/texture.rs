@@ -81,17 +81,16 @@ impl Check<'_> {
             }
         };
         if let Some(to_uv) = to_uv {
-            self.to_uv(to_uv, span);
+            self.texture_transform(to_uv, span);
         }
         (span, inner)
     }
 
-    fn to_uv(&mut self, to_uv: &Affine2, span: &Span) {
+    fn texture_transform(&mut self, to_uv: &Affine2, span: &Span) {
         let numbers = to_uv.to_cols_array();
         if !numbers.iter().all(|x| x.abs() <= MAX_TILES) {
-            let message = format!(
-                "a transform of texture coordinates with numbers that are not within ±{MAX_TILES:e}"
-            );
+            let message =
+                format!("a transform of texture coordinates with numbers that are not within ±{MAX_TILES:e}");
             self.error("scene::bad-transform", span, message);
         } else if to_uv.matrix2.determinant() == 0.0 {
             let message = "a transform of texture coordinates that is not invertible";

@@ -12,21 +12,6 @@ use crate::mitsuba::node::Node;
 use crate::mitsuba::props::Props;
 use crate::{files, ies};
 
-const KNOWN: &[&str] = &[
-    "area",
-    "constant",
-    "envmap",
-    "point",
-    "directional",
-    "spot",
-    "projector",
-    "goniometric",
-    "ies",
-    "sunsky",
-    "sky",
-    "sun",
-];
-
 impl<'a> Lowering<'a, '_> {
     /// An emitter of the scene itself.
     pub(super) fn emitter(&mut self, node: &'a Node) {
@@ -96,7 +81,7 @@ impl<'a> Lowering<'a, '_> {
                 None
             }
             _ => {
-                self.unknown_plugin(node, KNOWN, "this light is left out, and the picture is darker");
+                self.unknown_plugin(node, "this light is left out, and the picture is darker");
                 props.use_all();
                 None
             }
@@ -142,11 +127,7 @@ impl<'a> Lowering<'a, '_> {
         let mut portals = Vec::new();
         for node in self.nested(props, "shape") {
             if node.kind != "rectangle" {
-                self.unknown_plugin(
-                    node,
-                    &["rectangle"],
-                    "this portal is left out, and the picture is noisier",
-                );
+                self.unknown_plugin(node, "this portal is left out, and the picture is noisier");
                 continue;
             }
             let mut props = Props::new(node);

@@ -9,7 +9,6 @@ use crate::assembly::default_film;
 use crate::mitsuba::node::Node;
 use crate::mitsuba::props::Props;
 
-const FILTERS: &[&str] = &["box", "tent", "gaussian", "mitchell", "catmullrom", "lanczos", "blackmanharris"];
 /// Mitsuba's default filter, cut at four standard deviations.
 const DEFAULT_FILTER: FilterDesc = FilterDesc::Gaussian { stddev: 0.5, radius: 2.0 };
 
@@ -19,7 +18,7 @@ impl<'a> Lowering<'a, '_> {
         let [node, ..] = self.nested(props, "film")[..] else { return film };
         let mut props = Props::new(node);
         if !matches!(node.kind.as_str(), "hdrfilm" | "ldrfilm") {
-            self.unknown_plugin(node, &["hdrfilm"], "its size and filter are used, the rest is ignored");
+            self.unknown_plugin(node, "its size and filter are used, the rest is ignored");
         }
         film.width = self.count(&mut props, node, "width", film.width);
         film.height = self.count(&mut props, node, "height", film.height);
@@ -125,7 +124,7 @@ impl<'a> Lowering<'a, '_> {
                 FilterDesc::BlackmanHarris { radius: props.float("radius", self.out.d).unwrap_or(1.5) }
             }
             _ => {
-                self.unknown_plugin(node, FILTERS, "a Gaussian of standard deviation 0.5 pixels is used");
+                self.unknown_plugin(node, "a Gaussian of standard deviation 0.5 pixels is used");
                 props.use_all();
                 DEFAULT_FILTER
             }

@@ -85,8 +85,12 @@ impl<'a> Lowering<'a, '_> {
             if self.out.groups[group as usize].shapes.is_empty() {
                 if self.inner_groups[group as usize].is_empty() {
                     self.out.d.push(
-                        Diagnostic::warning("mitsuba::empty-group", &node.span, "an instance of a group of nothing")
-                            .consequence("nothing is seen of it"),
+                        Diagnostic::warning(
+                            "mitsuba::empty-group",
+                            &node.span,
+                            "an instance of a group of nothing",
+                        )
+                        .consequence("nothing is seen of it"),
                     );
                 }
                 continue;

@@ -8,30 +8,6 @@ use crate::mitsuba::node::{Node, Value};
 use crate::mitsuba::props::Props;
 use crate::mitsuba::tables;
 
-const KNOWN: &[&str] = &[
-    "diffuse",
-    "dielectric",
-    "thindielectric",
-    "conductor",
-    "roughconductor",
-    "roughdielectric",
-    "plastic",
-    "roughplastic",
-    "coateddiffuse",
-    "coatedconductor",
-    "eon",
-    "roughdiffuse",
-    "diffusetransmission",
-    "principled",
-    "principledthin",
-    "metallicroughness",
-    "twosided",
-    "mask",
-    "blendbsdf",
-    "bumpmap",
-    "normalmap",
-    "null",
-];
 pub(super) const GREY: Rgb = Rgb::splat(0.5);
 
 impl<'a> Lowering<'a, '_> {
@@ -226,7 +202,7 @@ impl<'a> Lowering<'a, '_> {
         if let [inner, ..] = self.nested(props, "bsdf")[..] {
             let id = self.material(inner);
             props.use_all();
-            self.unknown_plugin(node, KNOWN, &format!("its first nested {} is shown instead", inner.title()));
+            self.unknown_plugin(node, &format!("its first nested {} is shown instead", inner.title()));
             return Lowered::Same(id);
         }
         const COLORS: [&str; 3] = ["base_color", "diffuse_reflectance", "reflectance"];
@@ -242,7 +218,7 @@ impl<'a> Lowering<'a, '_> {
                 ColorInput::Constant(GREY),
             ),
         };
-        self.unknown_plugin(node, KNOWN, &consequence);
+        self.unknown_plugin(node, &consequence);
         let side = self.out.add_material(MaterialDesc::Diffuse { reflectance }, &node.span);
         Lowered::New(MaterialDesc::TwoSided { front: side, back: side })
     }

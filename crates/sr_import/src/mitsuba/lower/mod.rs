@@ -23,6 +23,7 @@ use sr_scene::{Diagnostic, Diagnostics, MaterialId, SceneDesc, Span};
 
 use crate::assembly::Assembly;
 use crate::mitsuba::node::{Child, Node};
+use crate::mitsuba::plugins;
 use crate::mitsuba::props::Props;
 use crate::values::shown;
 
@@ -206,14 +207,14 @@ impl<'a, 'd> Lowering<'a, 'd> {
     }
 
     /// Reports a plugin that does not exist or is not supported.
-    fn unknown_plugin(&mut self, node: &Node, known: &[&str], consequence: &str) {
+    fn unknown_plugin(&mut self, node: &Node, consequence: &str) {
         self.out.d.push(
             Diagnostic::warning(
                 "mitsuba::unsupported-plugin",
                 &node.span,
                 format!("{} is not supported", node.title()),
             )
-            .guess(&node.kind, known.iter().copied())
+            .guess(&node.kind, plugins::of(&node.class).iter().copied())
             .consequence(consequence),
         );
     }

@@ -5,10 +5,9 @@ use sr_scene::{CameraDesc, Diagnostic, FovAxis, Lens, Projection};
 
 use super::Lowering;
 use crate::mitsuba::node::Node;
+use crate::mitsuba::plugins;
 use crate::mitsuba::props::Props;
 use crate::values;
-
-const SENSORS: &[&str] = &["perspective", "thinlens", "orthographic", "spherical"];
 
 impl<'a> Lowering<'a, '_> {
     pub(super) fn sensors(&mut self, nodes: &[&'a Node]) {
@@ -28,9 +27,9 @@ impl<'a> Lowering<'a, '_> {
 
     fn sensor(&mut self, node: &'a Node) {
         let mut props = Props::new(node);
-        let known = SENSORS.contains(&node.kind.as_str());
+        let known = plugins::of("sensor").contains(&node.kind.as_str());
         if !known {
-            self.unknown_plugin(node, SENSORS, "a perspective camera at the same place is used");
+            self.unknown_plugin(node, "a perspective camera at the same place is used");
         }
         let to_world = props.transform("to_world", self.out.d);
         let near_clip = props.float("near_clip", self.out.d).unwrap_or(1e-2);

@@ -6,8 +6,6 @@ use super::Lowering;
 use crate::mitsuba::node::Node;
 use crate::mitsuba::props::Props;
 
-const KNOWN: &[&str] = &["path", "direct"];
-
 impl<'a> Lowering<'a, '_> {
     pub(super) fn integrators(&mut self, nodes: &[&'a Node]) {
         let Some((&first, more)) = nodes.split_first() else { return };
@@ -41,18 +39,14 @@ impl<'a> Lowering<'a, '_> {
                 let nested = self.nested(&mut props, "integrator");
                 props.use_all();
                 let used = nested.first().map(|n| n.title()).unwrap_or_default();
-                self.unknown_plugin(
-                    node,
-                    KNOWN,
-                    &format!("its nested {used} is used, without further outputs"),
-                );
+                self.unknown_plugin(node, &format!("its nested {used} is used, without further outputs"));
                 if let Some(inner) = nested.first() {
                     self.integrator(inner);
                 }
             }
             kind => {
                 if kind != "path" {
-                    self.unknown_plugin(node, KNOWN, "the integrator \"path\" is used");
+                    self.unknown_plugin(node, "the integrator \"path\" is used");
                     props.get("max_depth");
                 }
                 self.depths(&mut props, node);

@@ -12,21 +12,6 @@ use crate::mesh::{Convention, Format, Placement, Scheme, Subdivision, primitives
 use crate::mitsuba::node::{Node, Value};
 use crate::mitsuba::props::Props;
 
-const KNOWN: &[&str] = &[
-    "obj",
-    "ply",
-    "serialized",
-    "mesh",
-    "rectangle",
-    "cube",
-    "sphere",
-    "disk",
-    "cylinder",
-    "bilinearpatch",
-    "shapegroup",
-    "instance",
-];
-
 /// A shape's form, known or still to be read.
 enum Form {
     Ready(Geometry),
@@ -87,7 +72,7 @@ impl<'a> Lowering<'a, '_> {
         }
         for class in ["subsurface", "sensor"] {
             for inner in self.nested(&mut props, class) {
-                self.unknown_plugin(inner, &[], "the shape is rendered without it");
+                self.unknown_plugin(inner, "the shape is rendered without it");
             }
         }
         props.finish(self.out.d);
@@ -115,7 +100,7 @@ impl<'a> Lowering<'a, '_> {
             );
         }
         if emitter.kind != "area" {
-            self.unknown_plugin(emitter, &["area"], "the shape does not emit");
+            self.unknown_plugin(emitter, "the shape does not emit");
             return None;
         }
         let mut props = Props::new(emitter);
@@ -158,7 +143,7 @@ impl<'a> Lowering<'a, '_> {
                 None
             }
             _ => {
-                self.unknown_plugin(node, KNOWN, "the shape is left out");
+                self.unknown_plugin(node, "the shape is left out");
                 None
             }
         }

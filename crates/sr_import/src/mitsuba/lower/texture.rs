@@ -10,21 +10,6 @@ use crate::mitsuba::node::{Node, SpectrumValue, Value};
 use crate::mitsuba::props::{Props, finite_color};
 use crate::values;
 
-const KNOWN: &[&str] = &[
-    "bitmap",
-    "checkerboard",
-    "scale",
-    "mix",
-    "mesh_attribute",
-    "uniform",
-    "constant",
-    "rgb",
-    "srgb",
-    "d65",
-    "blackbody",
-    "regular",
-    "irregular",
-];
 /// What is shown instead of a texture that is not supported.
 const STAND_IN: Rgb = Rgb::splat(0.5);
 
@@ -121,11 +106,7 @@ impl<'a> Lowering<'a, '_> {
                 }
             },
             _ => {
-                self.unknown_plugin(
-                    node,
-                    KNOWN,
-                    "the constant 0.5 is used instead, and nothing in it is read",
-                );
+                self.unknown_plugin(node, "the constant 0.5 is used instead, and nothing in it is read");
                 props.use_all();
                 ColorInput::Constant(STAND_IN)
             }
