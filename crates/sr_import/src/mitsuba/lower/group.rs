@@ -32,7 +32,15 @@ impl<'a> Lowering<'a, '_> {
         self.groups_done.insert(key(node), index as u32);
         self.open.insert(key(node));
         let mut props = Props::new(node);
-        for child in self.nested(&mut props, "shape") {
+        let children = self.nested(&mut props, "shape");
+        if children.is_empty() {
+            let message = format!("{} has no shapes", node.title());
+            self.out.d.push(
+                Diagnostic::warning("mitsuba::empty-group", &node.span, message)
+                    .consequence("nothing is seen of its instances"),
+            );
+        }
+        for child in children {
             match child.kind.as_str() {
                 "instance" => {
                     if let Some(inner) = self.placed(child) {
@@ -83,16 +91,6 @@ impl<'a> Lowering<'a, '_> {
                 outer_from_inner: outer_from_inner * inner.outer_from_inner,
             }));
             if self.out.groups[group as usize].shapes.is_empty() {
-                if self.inner_groups[group as usize].is_empty() {
-                    self.out.d.push(
-                        Diagnostic::warning(
-                            "mitsuba::empty-group",
-                            &node.span,
-                            "an instance of a group of nothing",
-                        )
-                        .consequence("nothing is seen of it"),
-                    );
-                }
                 continue;
             }
             let world_from_group = Affine3A::from_mat4(outer_from_inner.as_mat4());
