@@ -8,6 +8,8 @@ use sr_scene::{Diagnostic, Span};
 
 /// Larger files are refused.
 pub const MAX_FILE_BYTES: u64 = 4 << 30;
+/// More than this is not unpacked from a packed file.
+pub const MAX_UNPACKED_BYTES: u64 = 1 << 30;
 /// Larger scene files are refused.
 pub const MAX_SCENE_BYTES: u64 = 256 << 20;
 
@@ -39,6 +41,20 @@ pub fn read_text(path: &Path) -> Result<String, String> {
     let text = String::from_utf8(bytes)
         .map_err(|e| format!("byte {} is not UTF-8 text", e.utf8_error().valid_up_to()))?;
     Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
+}
+
+/// What gzip has packed into `bytes`, or `bytes` themselves if it has not packed them; the error is half a sentence.
+pub fn unpacked(bytes: Vec<u8>, limit: u64) -> Result<Vec<u8>, String> {
+    if !bytes.starts_with(&[0x1f, 0x8b]) {
+        return Ok(bytes);
+    }
+    let mut out = Vec::new();
+    let reader = flate2::read::MultiGzDecoder::new(&bytes[..]);
+    reader.take(limit + 1).read_to_end(&mut out).map_err(|e| format!("it cannot be unpacked: {e}"))?;
+    if out.len() as u64 > limit {
+        return Err(format!("unpacked it has more than {limit} bytes"));
+    }
+    Ok(out)
 }
 
 fn reason(error: &std::io::Error) -> String {

@@ -1,9 +1,9 @@
 //! Scene files of other renderers to scene descriptions.
 //!
-//! In: Mitsuba XML (0.5, 0.6, 2.x and 3.x), or a tree of [`Node`]s that Python made of a dict. Out: a
+//! In: Mitsuba XML (0.5, 0.6, 2.x and 3.x), pbrt-v4 files, or a tree of [`Node`]s that Python made of a dict. Out: a
 //! [`SceneDesc`] and [`Diagnostics`]. The description is there exactly if no diagnostic is an error.
 //!
-//! - `mitsuba`: one folder for each format: text to the calls of an `Assembly`.
+//! - `mitsuba`, `pbrt`: one folder for each format: text to the calls of an `Assembly`. `format`: which one it is.
 //! - `assembly`: what all formats share: a description as it grows.
 //! - `mesh`, `images`, `jpeg`, `ies`: the files that scenes name, read in parallel, each once.
 //!
@@ -11,15 +11,18 @@
 //! asks for is dropped without a diagnostic.
 
 mod assembly;
+mod color_space;
 mod files;
+mod format;
 mod ies;
 mod images;
 mod jpeg;
 mod look_at;
 mod mesh;
 mod mitsuba;
+mod pbrt;
 mod pfm;
-mod spectrum;
+mod spectra;
 mod values;
 
 use std::path::{Path, PathBuf};
@@ -43,7 +46,7 @@ pub struct LoadOptions {
 pub fn load(path: &Path, options: &LoadOptions) -> (Option<SceneDesc>, Diagnostics) {
     let mut diagnostics = Diagnostics::default();
     let name = path.display().to_string();
-    match files::read_text(path) {
+    match format::Format::of_name(&name).read(path) {
         Ok(text) => {
             let directory = path.parent().unwrap_or(Path::new("")).to_owned();
             let scene = load_text(&name, &text, directory, options, &mut diagnostics);
@@ -83,5 +86,8 @@ fn load_text(
     diagnostics: &mut Diagnostics,
 ) -> Option<SceneDesc> {
     let directories = std::iter::once(directory).chain(options.search_paths.iter().cloned()).collect();
-    mitsuba::load(name, text, directories, &options.defines, diagnostics)
+    match format::Format::of_text(name, text) {
+        format::Format::Mitsuba => mitsuba::load(name, text, directories, &options.defines, diagnostics),
+        format::Format::Pbrt => pbrt::load(name, text, directories, diagnostics),
+    }
 }

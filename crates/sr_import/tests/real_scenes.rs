@@ -70,7 +70,7 @@ fn the_suite_of_mitsuba_is_read_without_panic() {
     let Some(folder) = scenes() else { return };
     let folder = folder.join("mitsuba-suite");
     let mut files = Vec::new();
-    collect(&folder, &mut files);
+    collect(&folder, "xml", &mut files);
     assert!(files.len() > 100, "only {} files: no evidence", files.len());
     let options = LoadOptions { search_paths: vec![folder.join("common")], ..LoadOptions::default() };
     let (mut loaded, mut failed) = (0, 0);
@@ -89,12 +89,61 @@ fn the_suite_of_mitsuba_is_read_without_panic() {
     eprintln!("{loaded} loaded, {failed} failed");
 }
 
-fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
+/// Name, shapes, triangles, lights without a shape, longest path, warnings by code.
+const PBRT: [Expected; 21] = [
+    ("living-room/scene", 65, 142973, 1, Some(66), &[ZERO_AREA]),
+    ("cornell-box/scene", 8, 36, 0, Some(66), &[]),
+    ("coffee/scene", 23, 235047, 0, Some(18), &[ZERO_AREA]),
+    ("staircase/scene", 755, 262508, 0, Some(66), &[ZERO_AREA]),
+    ("killeroos/killeroo-simple", 5, 66532, 0, Some(6), &[]),
+    ("killeroos/killeroo-moving", 5, 66532, 0, Some(6), &["pbrt::motion"]),
+    ("killeroos/killeroo-coated-gold", 5, 532230, 1, Some(6), &[]),
+    ("killeroos/killeroo-gold", 5, 532230, 1, Some(6), &[]),
+    ("killeroos/geometry/killeroo", 1, 33264, 0, Some(6), &["scene::no-camera"]),
+    ("veach-ajar/scene", 22, 382628, 0, Some(14), &[ZERO_AREA]),
+    ("veach-mis/scene", 9, 52, 0, Some(4), &[]),
+    ("veach-mis-pbrt/veach-mis-colorized", 10, 12, 0, Some(6), &[]),
+    ("veach-mis-pbrt/veach-mis", 10, 12, 0, Some(6), &[]),
+    ("veach-bidir/scene", 14, 11544, 0, Some(8), &[]),
+    ("cornell-box-variants/smallpt", 8, 10, 0, Some(6), &[]),
+    ("cornell-box-variants/cornell-box-silver", 8, 32, 0, Some(6), &[]),
+    ("cornell-box-variants/cornell-box-specular", 8, 22, 0, Some(6), &[]),
+    ("cornell-box-variants/cornell-box", 8, 32, 0, Some(6), &[]),
+    ("cornell-box-variants/cornell-box-volume", 8, 32, 0, Some(21), &["pbrt::unsupported-medium"]),
+    ("cornell-box-variants/volumetric-caustic", 7, 12, 0, Some(11), &["pbrt::unsupported-medium"]),
+    ("volumetric-caustic/scene", 8, 14, 0, Some(8), &["pbrt::unsupported-medium"]),
+];
+
+#[test]
+fn the_scenes_of_pbrt_load() {
+    let Some(folder) = scenes() else { return };
+    for (name, shapes, count, lights, depth, codes) in PBRT {
+        let (scene, diagnostics) = load(&folder.join(format!("{name}.pbrt")), &LoadOptions::default());
+        let found: Vec<&str> = diagnostics.list.iter().map(|d| d.code).collect();
+        assert_eq!(found, codes, "{name}\n{}", diagnostics.render(false));
+        let scene = scene.expect("a scene without errors");
+        assert_eq!(
+            (scene.shapes.len(), triangles(&scene), scene.lights.len()),
+            (shapes, count, lights),
+            "{name}"
+        );
+        assert_eq!(scene.settings.max_depth, depth, "{name}");
+    }
+    let mut files = Vec::new();
+    collect(&folder, "pbrt", &mut files);
+    assert!(files.len() > 20, "only {} files: no evidence", files.len());
+    for file in files {
+        let (scene, diagnostics) = load(&file, &LoadOptions::default());
+        assert!(scene.is_some(), "{}\n{}", file.display(), diagnostics.render(false));
+    }
+}
+
+fn collect(folder: &Path, extension: &str, files: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).expect("a readable folder").flatten() {
         let path = entry.path();
         if path.is_dir() {
-            collect(&path, files);
-        } else if path.extension().is_some_and(|e| e == "xml") {
+            collect(&path, extension, files);
+        } else if path.extension().is_some_and(|e| e == extension) {
             files.push(path);
         }
     }

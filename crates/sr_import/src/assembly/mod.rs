@@ -10,6 +10,7 @@ mod camera;
 mod images;
 mod meshes;
 
+use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -44,6 +45,7 @@ pub struct Assembly<'d> {
     /// Lights that are not shapes.
     pub lights: Vec<LightDesc>,
     images: Vec<ImageSlot>,
+    image_files: HashMap<(PathBuf, Decode), u32>,
     textures: Vec<TextureDesc>,
     materials: Vec<MaterialDesc>,
     material_spans: Vec<Span>,
@@ -63,6 +65,7 @@ impl<'d> Assembly<'d> {
             instances: Vec::new(),
             lights: Vec::new(),
             images: Vec::new(),
+            image_files: HashMap::new(),
             textures: Vec::new(),
             materials: Vec::new(),
             material_spans: Vec::new(),
@@ -82,16 +85,21 @@ impl<'d> Assembly<'d> {
         self.images.len() as u32 - 1
     }
 
+    /// An image that is there already.
+    pub fn image(&self, index: u32) -> Option<&Arc<Image>> {
+        match self.images.get(index as usize)? {
+            ImageSlot::Ready(image) => Some(image),
+            ImageSlot::File { .. } => None,
+        }
+    }
+
     /// An image to be read; its index. The same file, decoded alike, is the same image.
     pub fn image_file(&mut self, name: &str, decode: Decode, span: &Span) -> u32 {
         let path = self.find(name);
-        let known = self.images.iter().position(
-            |slot| matches!(slot, ImageSlot::File { path: p, decode: d, .. } if *p == path && *d == decode),
-        );
-        known.unwrap_or_else(|| {
-            self.images.push(ImageSlot::File { path, decode, span: span.clone() });
-            self.images.len() - 1
-        }) as u32
+        *self.image_files.entry((path, decode)).or_insert_with_key(|(path, decode)| {
+            self.images.push(ImageSlot::File { path: path.clone(), decode: *decode, span: span.clone() });
+            self.images.len() as u32 - 1
+        })
     }
 
     /// A texture, and how to use it.

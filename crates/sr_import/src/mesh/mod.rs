@@ -37,7 +37,7 @@ pub enum Format {
 
 /// Reads a file; the error is half a sentence.
 pub fn load(path: &Path, format: Format, flip_v: bool) -> Result<RawMesh, String> {
-    let bytes = files::read(path, files::MAX_FILE_BYTES)?;
+    let bytes = files::unpacked(files::read(path, files::MAX_FILE_BYTES)?, files::MAX_UNPACKED_BYTES)?;
     let mut fans = Fans::default();
     let mut mesh = match format {
         Format::Obj => obj::parse(&bytes, &mut fans)?,

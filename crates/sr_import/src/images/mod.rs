@@ -1,4 +1,8 @@
 //! Image files to [`Image`]s.
+//!
+//! - `texels`: numbers that are worked out from those of a file.
+
+mod texels;
 
 use std::io::Cursor;
 use std::path::Path;
@@ -10,6 +14,7 @@ use crate::files;
 use crate::jpeg;
 use crate::pfm;
 use crate::values::srgb_to_linear;
+pub use texels::{Encoding, TexelMap};
 
 /// Images of more texels are refused before anything is allocated.
 const MAX_TEXELS: u64 = 1 << 28;
@@ -26,16 +31,23 @@ pub enum Decode {
     Raw,
     /// Radiance: everything is made linear floating point.
     Linear,
+    /// Numbers that are worked out from those of the file.
+    Texels(TexelMap),
 }
 
 /// Reads a file; the error is half a sentence.
 pub fn load(path: &Path, decode: Decode) -> Result<Image, String> {
     let bytes = files::read(path, files::MAX_FILE_BYTES)?;
+    let linear = |pixels| match decode {
+        Decode::Texels(map) => map.apply(pixels, false),
+        _ => pixels,
+    };
     let (width, height, pixels) = if bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
-        open_exr(&bytes)?
+        let (width, height, pixels) = open_exr(&bytes)?;
+        (width, height, linear(pixels))
     } else if pfm::is_pfm(&bytes) {
         let (width, height, pixels) = pfm::decode(&bytes, MAX_TEXELS)?;
-        (width, height, all_finite(pixels))
+        (width, height, linear(all_finite(pixels)))
     } else {
         let image =
             if jpeg::is_jpeg(&bytes) { jpeg::decode(&bytes, MAX_TEXELS)? } else { open_other(path, &bytes)? };
@@ -116,6 +128,7 @@ fn convert(image: DynamicImage, decode: Decode) -> Pixels {
         return match decode {
             Decode::Linear => Pixels::F32 { channels, data: linear_bytes(&data, channels) },
             Decode::Color | Decode::Raw => Pixels::U8 { channels, data },
+            Decode::Texels(map) => map.apply(Pixels::U8 { channels, data }, true),
         };
     }
     let float = matches!(image, D::ImageRgb32F(_) | D::ImageRgba32F(_));
@@ -124,13 +137,17 @@ fn convert(image: DynamicImage, decode: Decode) -> Pixels {
         3 => image.into_rgb32f().into_raw(),
         _ => image.into_rgba32f().into_raw(),
     };
-    if !float && decode != Decode::Raw {
+    if !float && matches!(decode, Decode::Color | Decode::Linear) {
         for texel in data.chunks_exact_mut(channels.into()) {
             texel.iter_mut().take(3).for_each(|v| *v = srgb_to_linear(f64::from(*v)) as f32);
         }
     }
     data.iter_mut().for_each(|v| *v = finite(*v));
-    Pixels::F32 { channels, data }
+    let pixels = Pixels::F32 { channels, data };
+    match decode {
+        Decode::Texels(map) => map.apply(pixels, !float),
+        _ => pixels,
+    }
 }
 
 fn linear_bytes(data: &[u8], channels: u8) -> Vec<f32> {

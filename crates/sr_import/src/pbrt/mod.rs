@@ -1,0 +1,151 @@
+//! pbrt-v4 scene files.
+//!
+//! In: text. Out: calls of an [`Assembly`]. A file is carried out as it is read, directive by directive.
+//!
+//! - `syntax`: bytes to words, numbers and parameters. `params`: looking parameters up.
+//! - `reader`: the directives that keep state: transforms, attributes, objects, other files.
+//! - `color`: values with a color. `texture`, `material`, `light`, `shape`, `camera`, `film`, `options`: what they say.
+//!
+//! Light transport is RGB here and spectral there: spectra become what the CIE's observer sees, see
+//! [`crate::spectra`].
+
+mod camera;
+mod color;
+mod film;
+mod light;
+mod material;
+mod options;
+mod params;
+mod reader;
+mod shape;
+mod state;
+mod syntax;
+mod texture;
+
+use std::collections::{HashMap, HashSet};
+use std::path::PathBuf;
+
+use sr_scene::{Diagnostic, Diagnostics, MaterialId, SceneDesc, Span};
+
+use crate::assembly::Assembly;
+use crate::files;
+use params::Notes;
+pub use reader::DIRECTIVES;
+use state::{Saved, State};
+use texture::FloatTexture;
+
+/// Text is read as UTF-8; what is none becomes `\u{fffd}`, which no keyword has.
+pub fn read_text(path: &std::path::Path) -> Result<String, String> {
+    let bytes = files::unpacked(files::read(path, files::MAX_SCENE_BYTES)?, files::MAX_SCENE_BYTES)?;
+    Ok(String::from_utf8(bytes).unwrap_or_else(|e| String::from_utf8_lossy(e.as_bytes()).into_owned()))
+}
+
+/// Loads a scene from text. Files are looked for in `directories`.
+pub fn load(
+    name: &str,
+    text: &str,
+    directories: Vec<PathBuf>,
+    diagnostics: &mut Diagnostics,
+) -> Option<SceneDesc> {
+    let source = diagnostics.sources.add(name, text);
+    let span = Span { source, bytes: 0..text.len().min(1) };
+    let mut reader = Reader::new(directories, diagnostics);
+    reader.open_files.push(PathBuf::from(name));
+    reader.run(text, source);
+    reader.finish(&span)
+}
+
+/// What is known while a scene is read.
+struct Reader<'d> {
+    out: Assembly<'d>,
+    /// Messages that were given already.
+    said: HashSet<String>,
+    state: State,
+    stack: Vec<Saved>,
+    coordinate_systems: HashMap<String, [glam::DMat4; 2]>,
+    materials: HashMap<String, MaterialId>,
+    /// Shared by all that have none.
+    default_material: Option<MaterialId>,
+    float_textures: HashMap<String, FloatTexture>,
+    color_textures: HashMap<String, sr_scene::ColorInput>,
+    /// Objects by name: their group.
+    objects: HashMap<String, usize>,
+    /// The object that is being described.
+    object: Option<usize>,
+    options: options::Options,
+    /// Files that are being read, the outermost first.
+    open_files: Vec<PathBuf>,
+    /// How many were included so far.
+    includes: usize,
+    /// How long they were together.
+    included_bytes: usize,
+    /// Nothing more is read: a file cannot be understood.
+    is_broken: bool,
+}
+
+impl<'d> Reader<'d> {
+    fn new(directories: Vec<PathBuf>, diagnostics: &'d mut Diagnostics) -> Self {
+        Self {
+            out: Assembly::new(directories, diagnostics),
+            said: HashSet::new(),
+            state: State::default(),
+            stack: Vec::new(),
+            coordinate_systems: HashMap::new(),
+            materials: HashMap::new(),
+            default_material: None,
+            float_textures: HashMap::new(),
+            color_textures: HashMap::new(),
+            objects: HashMap::new(),
+            object: None,
+            options: options::Options::default(),
+            open_files: Vec::new(),
+            includes: 0,
+            included_bytes: 0,
+            is_broken: false,
+        }
+    }
+
+    /// Where diagnostics go that are said once.
+    fn notes(&mut self) -> Notes<'_> {
+        Notes { list: self.out.d, said: &mut self.said }
+    }
+
+    fn warn(&mut self, code: &'static str, span: &Span, message: impl Into<String>, consequence: &str) {
+        self.notes().push(Diagnostic::warning(code, span, message).consequence(consequence));
+    }
+
+    /// Says that there is no `what` by this name, with a guess among those that there are.
+    fn unresolved<'a>(
+        notes: &mut Notes<'_>,
+        span: &Span,
+        what: String,
+        name: &str,
+        known: impl Iterator<Item = &'a String>,
+        consequence: &str,
+    ) {
+        // Guessing takes time for each name that there is.
+        if notes.is_full() {
+            return;
+        }
+        let note = Diagnostic::warning("pbrt::unresolved-name", span, what)
+            .guess(name, known.map(String::as_str))
+            .consequence(consequence);
+        notes.push(note);
+    }
+
+    fn error(&mut self, code: &'static str, span: &Span, message: impl Into<String>) {
+        self.notes().push(Diagnostic::error(code, span, message));
+    }
+
+    fn finish(mut self, span: &Span) -> Option<SceneDesc> {
+        if !self.is_broken {
+            if !self.stack.is_empty() {
+                let open = self.stack.len();
+                let message = format!("{open} of AttributeBegin, TransformBegin and ObjectBegin have no end");
+                self.warn("pbrt::unbalanced", span, message, "they end with the file");
+            }
+            self.options_end(span);
+        }
+        self.out.finish(span)
+    }
+}

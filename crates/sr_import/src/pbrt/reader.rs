@@ -1,0 +1,449 @@
+//! Directives, one by one: those that keep state are carried out here, the others where their subject is.
+
+use std::rc::Rc;
+
+use glam::{Affine3A, DMat4, DVec3};
+use sr_scene::{Diagnostic, GroupDesc, InstanceDesc, SourceId, Span};
+
+use super::params::{Notes, Params};
+use super::state::{Active, Inherited, Saved, State};
+use super::syntax::{Result, Scanner, SyntaxError};
+use super::{Reader, read_text};
+use crate::color_space::ColorSpace;
+use crate::look_at::look_at;
+use crate::values::shown;
+
+/// Files within files, and attributes within attributes.
+const MAX_DEPTH: usize = 64;
+
+/// More files are refused.
+const MAX_INCLUDES: usize = 4096;
+
+/// All included texts together may have this many bytes.
+const MAX_INCLUDED_BYTES: usize = 1 << 30;
+
+/// Parameters that `Attribute` may give to one kind of directive, and values of one of them: each directive has them.
+const MAX_ATTRIBUTES: usize = 256;
+
+/// Instances that a scene may have.
+const MAX_INSTANCES: usize = 1 << 22;
+
+/// All directives there are, for guesses.
+pub const DIRECTIVES: &[&str] = &[
+    "Accelerator",
+    "ActiveTransform",
+    "AreaLightSource",
+    "Attribute",
+    "AttributeBegin",
+    "AttributeEnd",
+    "Camera",
+    "ColorSpace",
+    "ConcatTransform",
+    "CoordSysTransform",
+    "CoordinateSystem",
+    "Film",
+    "Identity",
+    "Import",
+    "Include",
+    "Integrator",
+    "LightSource",
+    "LookAt",
+    "MakeNamedMaterial",
+    "MakeNamedMedium",
+    "Material",
+    "MediumInterface",
+    "NamedMaterial",
+    "ObjectBegin",
+    "ObjectEnd",
+    "ObjectInstance",
+    "Option",
+    "PixelFilter",
+    "ReverseOrientation",
+    "Rotate",
+    "Sampler",
+    "Scale",
+    "Shape",
+    "Texture",
+    "Transform",
+    "TransformBegin",
+    "TransformEnd",
+    "TransformTimes",
+    "Translate",
+    "WorldBegin",
+    "WorldEnd",
+];
+
+impl Reader<'_> {
+    /// Carries out a text. What cannot be understood is an error, and the end.
+    pub(super) fn run(&mut self, text: &str, source: SourceId) {
+        let mut scanner = Scanner::new(text);
+        while !self.is_broken && scanner.peek().is_some() {
+            if let Err(SyntaxError { message, bytes }) = self.directive(&mut scanner, source) {
+                self.error("pbrt::syntax", &Span { source, bytes }, message);
+                self.is_broken = true;
+            }
+        }
+    }
+
+    fn directive(&mut self, s: &mut Scanner<'_>, source: SourceId) -> Result<()> {
+        let (word, bytes) = s.word();
+        if word.is_empty() {
+            return Err(s.unexpected("a directive"));
+        }
+        let span = Span { source, bytes };
+        match word {
+            "AttributeBegin" => self.save(Saved::Attribute(Box::new(self.state.clone()), span)),
+            "TransformBegin" => {
+                let State { ctm, end_ctm, active, .. } = self.state;
+                self.save(Saved::Transform(Box::new(([ctm, end_ctm], active)), span));
+            }
+            "AttributeEnd" | "TransformEnd" | "ObjectEnd" => self.restore(word, &span),
+            "ObjectBegin" => {
+                let name = s.string()?.0;
+                self.object_begin(&name, span);
+            }
+            "ObjectInstance" => {
+                let name = s.string()?.0;
+                self.object_instance(&name, &span);
+            }
+            "Include" | "Import" => {
+                let (name, bytes) = s.string()?;
+                self.include(&name, &Span { source, bytes });
+            }
+            "WorldBegin" => {
+                self.options_end(&span);
+                self.state.active = Active::All;
+                self.set_ctm([DMat4::IDENTITY; 2]);
+                self.coordinate_systems.insert("world".into(), [DMat4::IDENTITY; 2]);
+            }
+            // It ends nothing in pbrt-v4.
+            "WorldEnd" => {}
+            "ReverseOrientation" => self.state.reverse_orientation ^= true,
+            "ColorSpace" => {
+                let (name, bytes) = s.string()?;
+                self.color_space(&name, &Span { source, bytes });
+            }
+            "Attribute" => self.attribute(s, &span)?,
+            "Option" => self.option(s, &span)?,
+            "NamedMaterial" => {
+                let (name, bytes) = s.string()?;
+                self.named_material(&name, &Span { source, bytes });
+            }
+            "MediumInterface" => {
+                s.string()?;
+                if s.peek() == Some(b'"') {
+                    s.string()?;
+                }
+            }
+            "Texture" => self.texture_directive(s, span)?,
+            "Camera" | "Film" | "PixelFilter" | "Sampler" | "Integrator" | "Accelerator" | "Material"
+            | "MakeNamedMaterial" | "MakeNamedMedium" | "LightSource" | "AreaLightSource" | "Shape" => {
+                self.typed(word, s, span)?;
+            }
+            _ => {
+                if !self.transform(word, s, &span)? {
+                    return Err(unknown(word, span.bytes));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Directives of the form `Shape "sphere"` and parameters.
+    fn typed(&mut self, word: &str, s: &mut Scanner<'_>, mut span: Span) -> Result<()> {
+        let (kind, bytes) = s.string()?;
+        span.bytes.end = bytes.end;
+        let list = s.parameters()?;
+        let attributes = &self.state.attributes;
+        let inherited: Inherited = match word {
+            "Shape" => attributes.shape.clone(),
+            "LightSource" | "AreaLightSource" => attributes.light.clone(),
+            "Material" | "MakeNamedMaterial" => attributes.material.clone(),
+            "MakeNamedMedium" => attributes.medium.clone(),
+            _ => Inherited::default(),
+        };
+        if matches!(word, "Camera" | "LightSource" | "Shape") && self.state.ctm != self.state.end_ctm {
+            let message = "motion between two times is not supported";
+            self.warn("pbrt::motion", &span, message, "everything is where it is at the first one");
+        }
+        let params = Params::new(format!("{word} \"{}\"", shown(&kind)), span, list, &inherited);
+        match word {
+            "Camera" => self.camera(&kind, params),
+            "Film" => self.options.film = Some((kind.into_owned(), params)),
+            "PixelFilter" => self.options.filter = Some((kind.into_owned(), params)),
+            "Sampler" => self.sampler(&kind, params),
+            "Integrator" => self.integrator(&kind, params),
+            // How fast it is, not what is seen.
+            "Accelerator" => {}
+            "Material" => self.material_directive(&kind, params),
+            "MakeNamedMaterial" => self.make_named_material(&kind, params),
+            "MakeNamedMedium" => self.medium(&kind, params),
+            "LightSource" => self.light(&kind, params),
+            "AreaLightSource" => self.area_light_source(&kind, params),
+            _ => self.shape(&kind, params),
+        }
+        Ok(())
+    }
+
+    /// A directive that changes the current transform; false if `word` is none.
+    fn transform(&mut self, word: &str, s: &mut Scanner<'_>, span: &Span) -> Result<bool> {
+        let mut v = [0.0; 16];
+        let step = match word {
+            "Identity" => {
+                self.set_ctm([DMat4::IDENTITY; 2]);
+                return Ok(true);
+            }
+            "Translate" => {
+                s.numbers(&mut v[..3])?;
+                DMat4::from_translation(DVec3::new(v[0], v[1], v[2]))
+            }
+            "Scale" => {
+                s.numbers(&mut v[..3])?;
+                DMat4::from_scale(DVec3::new(v[0], v[1], v[2]))
+            }
+            "Rotate" => {
+                s.numbers(&mut v[..4])?;
+                match DVec3::new(v[1], v[2], v[3]).try_normalize() {
+                    Some(axis) => DMat4::from_axis_angle(axis, v[0].to_radians()),
+                    None => {
+                        self.error("pbrt::bad-transform", span, "the axis of a rotation cannot be zero");
+                        DMat4::IDENTITY
+                    }
+                }
+            }
+            "LookAt" => {
+                s.numbers(&mut v[..9])?;
+                let point = |i: usize| DVec3::new(v[i], v[i + 1], v[i + 2]);
+                match look_at(point(0), point(3), point(6)) {
+                    Ok(world_from_camera) => world_from_camera.inverse(),
+                    Err(reason) => {
+                        self.error("pbrt::bad-transform", span, reason);
+                        DMat4::IDENTITY
+                    }
+                }
+            }
+            "Transform" => {
+                s.numbers(&mut v)?;
+                self.set_ctm([DMat4::from_cols_array(&v); 2]);
+                return Ok(true);
+            }
+            "ConcatTransform" => {
+                s.numbers(&mut v)?;
+                DMat4::from_cols_array(&v)
+            }
+            "CoordinateSystem" => {
+                let name = s.string()?.0.into_owned();
+                self.coordinate_systems.insert(name, [self.state.ctm, self.state.end_ctm]);
+                return Ok(true);
+            }
+            "CoordSysTransform" => {
+                let (name, bytes) = s.string()?;
+                self.coordinate_system(&name, &Span { source: span.source, bytes });
+                return Ok(true);
+            }
+            "ActiveTransform" => {
+                let (which, bytes) = s.word();
+                self.state.active = match which {
+                    "StartTime" => Active::Start,
+                    "EndTime" => Active::End,
+                    "All" => Active::All,
+                    _ => {
+                        let message = "StartTime, EndTime or All was expected here".into();
+                        return Err(SyntaxError { message, bytes });
+                    }
+                };
+                return Ok(true);
+            }
+            "TransformTimes" => {
+                s.numbers(&mut v[..2])?;
+                return Ok(true);
+            }
+            _ => return Ok(false),
+        };
+        self.set_ctm([self.state.ctm * step, self.state.end_ctm * step]);
+        Ok(true)
+    }
+
+    /// At the start and at the end, where they are active.
+    fn set_ctm(&mut self, [start, end]: [DMat4; 2]) {
+        if self.state.active != Active::End {
+            self.state.ctm = start;
+        }
+        if self.state.active != Active::Start {
+            self.state.end_ctm = end;
+        }
+    }
+
+    fn coordinate_system(&mut self, name: &str, span: &Span) {
+        match self.coordinate_systems.get(name) {
+            Some(&ctm) => self.set_ctm(ctm),
+            None => {
+                let message = format!("there is no coordinate system \"{}\"", shown(name));
+                let mut notes = Notes { list: self.out.d, said: &mut self.said };
+                let known = self.coordinate_systems.keys();
+                Self::unresolved(&mut notes, span, message, name, known, "the transform stays as it is");
+            }
+        }
+    }
+
+    fn save(&mut self, saved: Saved) {
+        if self.stack.len() >= MAX_DEPTH * 16 {
+            let (Saved::Attribute(_, span) | Saved::Transform(_, span) | Saved::Object(_, span)) = saved;
+            self.error("pbrt::too-deep", &span, "attributes are nested too deeply");
+            self.is_broken = true;
+            return;
+        }
+        self.stack.push(saved);
+    }
+
+    fn restore(&mut self, word: &str, span: &Span) {
+        match (word, self.stack.pop()) {
+            ("AttributeEnd", Some(Saved::Attribute(state, _))) => self.state = *state,
+            ("TransformEnd", Some(Saved::Transform(saved, _))) => {
+                let ([ctm, end_ctm], active) = *saved;
+                self.state = State { ctm, end_ctm, active, ..self.state.clone() };
+            }
+            ("ObjectEnd", Some(Saved::Object(state, _))) => {
+                self.state = *state;
+                self.object = None;
+            }
+            (_, saved) => {
+                self.error("pbrt::unbalanced", span, format!("{word} ends nothing that was begun"));
+                self.stack.extend(saved);
+            }
+        }
+    }
+
+    fn object_begin(&mut self, name: &str, span: Span) {
+        if self.object.is_some() {
+            self.error("pbrt::unbalanced", &span, "an object begins inside another one");
+            return;
+        }
+        let group = self.out.groups.len();
+        self.out.groups.push(GroupDesc { shapes: Vec::new() });
+        if self.objects.insert(name.to_owned(), group).is_some() {
+            let message = format!("the object \"{}\" is described twice", shown(name));
+            self.warn("pbrt::duplicate-name", &span, message, "instances after this show the second one");
+        }
+        self.object = Some(group);
+        self.save(Saved::Object(Box::new(self.state.clone()), span));
+    }
+
+    fn object_instance(&mut self, name: &str, span: &Span) {
+        if self.object.is_some() {
+            self.error("pbrt::unbalanced", span, "an instance inside of an object");
+            return;
+        }
+        let Some(&group) = self.objects.get(name) else {
+            let message = format!("there is no object \"{}\"", shown(name));
+            let mut notes = Notes { list: self.out.d, said: &mut self.said };
+            Self::unresolved(&mut notes, span, message, name, self.objects.keys(), "nothing is shown here");
+            return;
+        };
+        if self.out.instances.len() >= MAX_INSTANCES {
+            let message = format!("more than {MAX_INSTANCES} instances");
+            self.error("pbrt::too-many-instances", span, message);
+            self.is_broken = true;
+            return;
+        }
+        if self.out.groups[group].shapes.is_empty() {
+            return;
+        }
+        let world_from_group = Affine3A::from_mat4(self.state.ctm.as_mat4());
+        self.out.instances.push(InstanceDesc { group: group as u32, world_from_group, span: span.clone() });
+    }
+
+    fn include(&mut self, name: &str, span: &Span) {
+        let path = self.out.find(name);
+        self.includes += 1;
+        let refused = if self.open_files.contains(&path) {
+            Some(format!("{} includes itself", path.display()))
+        } else if self.open_files.len() > MAX_DEPTH || self.includes > MAX_INCLUDES {
+            Some(format!(
+                "more than {MAX_INCLUDES} files are included, or more than {MAX_DEPTH} within another"
+            ))
+        } else {
+            None
+        };
+        if let Some(message) = refused {
+            self.error("pbrt::include", span, message);
+            self.is_broken = true;
+            return;
+        }
+        match read_text(&path) {
+            Ok(text) if self.included_bytes + text.len() > MAX_INCLUDED_BYTES => {
+                self.error(
+                    "pbrt::include",
+                    span,
+                    format!("more than {MAX_INCLUDED_BYTES} bytes are included"),
+                );
+                self.is_broken = true;
+            }
+            Ok(text) => {
+                self.included_bytes += text.len();
+                let source = self.out.d.sources.add(path.display().to_string(), &*text);
+                self.open_files.push(path);
+                self.run(&text, source);
+                self.open_files.pop();
+            }
+            Err(reason) => {
+                let error = crate::files::error("pbrt::include", span, "included file", &path, &reason);
+                self.notes().push(error);
+            }
+        }
+    }
+
+    fn color_space(&mut self, name: &str, span: &Span) {
+        match ColorSpace::NAMES.iter().find(|(known, _)| *known == name) {
+            Some(&(_, space)) => self.state.color_space = space,
+            None => {
+                let message = format!("\"{}\" is not a color space that is known", shown(name));
+                let note = Diagnostic::warning("pbrt::unknown-value", span, message)
+                    .guess(name, ColorSpace::NAMES.map(|(known, _)| known))
+                    .consequence("colors are read as before");
+                self.notes().push(note);
+            }
+        }
+    }
+
+    /// `Attribute "shape" …`: parameters for all shapes that follow.
+    fn attribute(&mut self, s: &mut Scanner<'_>, span: &Span) -> Result<()> {
+        let (target, bytes) = s.string()?;
+        let list = s.parameters()?;
+        let attributes = &mut self.state.attributes;
+        let slot = match &*target {
+            "shape" => &mut attributes.shape,
+            "light" => &mut attributes.light,
+            "material" => &mut attributes.material,
+            "medium" => &mut attributes.medium,
+            "texture" => &mut attributes.texture,
+            other => {
+                let message = format!("nothing has attributes by the name of \"{}\"", shown(other));
+                let span = Span { source: span.source, bytes };
+                self.warn("pbrt::unknown-value", &span, message, "they are ignored");
+                return Ok(());
+            }
+        };
+        let is_long = list.iter().any(|parameter| parameter.values.len() > MAX_ATTRIBUTES);
+        if is_long || slot.len() + list.len() > MAX_ATTRIBUTES {
+            self.error(
+                "pbrt::too-deep",
+                span,
+                format!("more than {MAX_ATTRIBUTES} attributes of one kind, or values of one of them"),
+            );
+            self.is_broken = true;
+            return Ok(());
+        }
+        let slot = Rc::make_mut(slot);
+        // The newest go first: they are found first.
+        slot.splice(0..0, list.into_iter().map(|parameter| (parameter, span.source)));
+        Ok(())
+    }
+}
+
+fn unknown(word: &str, bytes: std::ops::Range<usize>) -> SyntaxError {
+    // A guess is part of the sentence: an error of the syntax has no place for hints.
+    let guess = Diagnostic::error("", &Span::default(), "").guess(word, DIRECTIVES.iter().copied()).hint;
+    let guess = guess.map(|hint| format!("; {hint}")).unwrap_or_default();
+    SyntaxError { message: format!("\"{}\" is not a directive of pbrt{guess}", shown(word)), bytes }
+}

@@ -1,0 +1,216 @@
+//! Bytes to words, strings and numbers.
+
+use std::borrow::Cow;
+use std::ops::Range;
+
+use super::{Result, SyntaxError};
+use crate::values::shown;
+
+/// A place in a text, and what can be read there. Space and comments are passed over.
+pub struct Scanner<'t> {
+    text: &'t str,
+    at: usize,
+}
+
+impl<'t> Scanner<'t> {
+    /// At the start of a text.
+    pub fn new(text: &'t str) -> Self {
+        Self { text, at: 0 }
+    }
+
+    /// The first byte of what comes next; `None` at the end.
+    pub fn peek(&mut self) -> Option<u8> {
+        let bytes = self.text.as_bytes();
+        while let Some(&byte) = bytes.get(self.at) {
+            match byte {
+                b' ' | b'\t' | b'\n' | b'\r' => self.at += 1,
+                b'#' => {
+                    let rest = &bytes[self.at..];
+                    self.at += rest.iter().position(|b| *b == b'\n').unwrap_or(rest.len());
+                }
+                _ => return Some(byte),
+            }
+        }
+        None
+    }
+
+    /// Passes over `byte` if it comes next.
+    pub fn skip(&mut self, byte: u8) -> bool {
+        let is_next = self.peek() == Some(byte);
+        self.at += usize::from(is_next);
+        is_next
+    }
+
+    /// Is a string the first of the values that come next?
+    pub fn is_string_next(&mut self) -> bool {
+        let mut ahead = Self { text: self.text, at: self.at };
+        ahead.skip(b'[');
+        ahead.peek() == Some(b'"')
+    }
+
+    /// What stands between delimiters, without quotes: a directive, a number, `true`. Empty where none is.
+    pub fn word(&mut self) -> (&'t str, Range<usize>) {
+        self.peek();
+        let start = self.at;
+        let rest = &self.text.as_bytes()[start..];
+        let is_end = |b: &u8| matches!(b, b' ' | b'\t' | b'\n' | b'\r' | b'"' | b'[' | b']' | b'#');
+        self.at += rest.iter().position(is_end).unwrap_or(rest.len());
+        (&self.text[start..self.at], start..self.at)
+    }
+
+    /// A string in quotes. It ends on its line.
+    pub fn string(&mut self) -> Result<(Cow<'t, str>, Range<usize>)> {
+        if self.peek() != Some(b'"') {
+            return Err(self.unexpected("a string in quotes"));
+        }
+        let start = self.at;
+        let bytes = self.text.as_bytes();
+        let mut end = start + 1;
+        let mut escaped = false;
+        loop {
+            match bytes.get(end) {
+                Some(b'"') => break,
+                Some(b'\\') if bytes.get(end + 1).is_some() => {
+                    escaped = true;
+                    end += 2;
+                }
+                None | Some(b'\n') => return Err(error("this string has no end", start..end)),
+                Some(_) => end += 1,
+            }
+        }
+        self.at = end + 1;
+        let inner = &self.text[start + 1..end];
+        let inner = if escaped { Cow::Owned(unescaped(inner)) } else { Cow::Borrowed(inner) };
+        Ok((inner, start..self.at))
+    }
+
+    /// A finite number.
+    pub fn number(&mut self) -> Result<f64> {
+        let (word, bytes) = self.word();
+        match word.parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(value),
+            _ => Err(self.no_number(word, bytes)),
+        }
+    }
+
+    /// As many numbers as there are places in `out`, in brackets or not.
+    pub fn numbers(&mut self, out: &mut [f64]) -> Result<()> {
+        let bracket = self.skip(b'[');
+        for slot in out.iter_mut() {
+            *slot = self.number()?;
+        }
+        if bracket && !self.skip(b']') {
+            return Err(self.unexpected(&format!("a bracket after {} numbers", out.len())));
+        }
+        Ok(())
+    }
+
+    /// The numbers up to a closing bracket, or one. They are what parameters are mostly made of.
+    pub fn floats(&mut self) -> Result<Vec<f32>> {
+        self.list(|word| word.parse::<f32>().ok().filter(|v| v.is_finite()))
+    }
+
+    /// The whole numbers up to a closing bracket, or one.
+    pub fn integers(&mut self) -> Result<Vec<i32>> {
+        self.list(|word| {
+            // "3.0" is one, too.
+            let as_float = || word.parse::<f64>().ok().filter(|v| v.fract() == 0.0 && v.abs() < 2e9);
+            word.parse::<i32>().ok().or_else(|| as_float().map(|v| v as i32))
+        })
+    }
+
+    fn list<T>(&mut self, parse: impl Fn(&str) -> Option<T>) -> Result<Vec<T>> {
+        let bracket = self.skip(b'[');
+        let mut values = Vec::new();
+        loop {
+            if bracket && self.skip(b']') {
+                return Ok(values);
+            }
+            let (word, bytes) = self.word();
+            match parse(word) {
+                Some(value) => values.push(value),
+                None => return Err(self.no_number(word, bytes)),
+            }
+            if !bracket {
+                return Ok(values);
+            }
+        }
+    }
+
+    fn no_number(&mut self, word: &str, bytes: Range<usize>) -> SyntaxError {
+        if word.is_empty() {
+            return self.unexpected("a number");
+        }
+        error(format!("\"{}\" is not a number that can be used here", shown(word)), bytes)
+    }
+
+    /// Something else stands here.
+    pub fn unexpected(&mut self, expected: &str) -> SyntaxError {
+        match self.peek() {
+            None => error(format!("the file ends where {expected} was expected"), self.at..self.at),
+            Some(_) => {
+                let next = self.text[self.at..].chars().next().unwrap_or(' ');
+                let message = format!("{expected} was expected here, not \"{next}\"");
+                error(message, self.at..self.at + next.len_utf8())
+            }
+        }
+    }
+}
+
+/// An error at a place.
+fn error(message: impl Into<String>, bytes: Range<usize>) -> SyntaxError {
+    SyntaxError { message: message.into(), bytes }
+}
+
+fn unescaped(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    let mut chars = text.chars();
+    while let Some(c) = chars.next() {
+        out.push(match c {
+            '\\' => match chars.next() {
+                Some('n') => '\n',
+                Some('t') => '\t',
+                Some('r') => '\r',
+                Some('b') => '\u{8}',
+                Some('f') => '\u{c}',
+                Some(other) => other,
+                None => '\\',
+            },
+            other => other,
+        });
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_strings_and_numbers() {
+        let mut s = Scanner::new("# first\nShape\"a \\\"b\\\"\" [ 1 -2.5e0 ]#end\n3 true]");
+        assert_eq!(s.word(), ("Shape", 8..13));
+        assert_eq!(s.string().unwrap(), (Cow::from("a \"b\""), 13..22));
+        assert_eq!(s.floats().unwrap(), [1.0, -2.5]);
+        assert_eq!(s.integers().unwrap(), [3]);
+        assert_eq!(s.word().0, "true");
+        assert!(s.skip(b']'));
+        assert_eq!(s.peek(), None);
+    }
+
+    #[test]
+    fn what_is_no_number_is_an_error_at_its_place() {
+        for (text, bytes) in
+            [("[1 x]", 3..4), ("[1 nan]", 3..6), ("[1e999]", 1..6), ("[1 2", 4..4), ("[\"a\"]", 1..2)]
+        {
+            assert_eq!(Scanner::new(text).floats().unwrap_err().bytes, bytes, "{text}");
+        }
+        assert!(Scanner::new("[1.5]").integers().is_err());
+        assert!(Scanner::new("[99999999999]").integers().is_err());
+        assert_eq!(Scanner::new("\"a\nb\"").string().unwrap_err().bytes, 0..2);
+        assert!(Scanner::new("\"a\\").string().is_err());
+        let mut three = [0.0; 3];
+        assert!(Scanner::new("[1 2 3 4]").numbers(&mut three).is_err());
+        assert!(Scanner::new("1 2 3 4").numbers(&mut three).is_ok());
+    }
+}
