@@ -4,8 +4,8 @@
 //! processor has. What happens to a vertex does not depend on others, and nothing of a vertex is known beforehand, not even
 //! that all look from the same angle.
 //!
-//! `cargo bench -p sr_bsdf --bench models`; a line for each: model, angle, function, nanoseconds. `benches/models.py` puts
-//! them beside Mitsuba's.
+//! `cargo bench -p sr_bsdf --bench models`; a line for each: model, angle, function, nanoseconds. `-- blend coat` measures
+//! those whose names have these in them. `benches/models.py` puts them beside Mitsuba's.
 
 use std::hint::black_box;
 use std::io::Write;
@@ -111,8 +111,12 @@ impl Recipe for Coated<'_> {
     }
 }
 
-/// Prints a line for each angle and function.
+/// Prints a line for each angle and function, if the command line names no model or one like this.
 fn measure<R: Recipe>(name: &str, recipe: R) {
+    let mut wanted = std::env::args().skip(1).filter(|arg| !arg.starts_with('-')).peekable();
+    if wanted.peek().is_some() && !wanted.any(|part| name.contains(&part)) {
+        return;
+    }
     let mut out = std::io::stdout();
     for angle in ANGLES {
         let mut vertices = Vertices::seen_from(angle.to_radians());

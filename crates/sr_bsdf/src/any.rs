@@ -9,9 +9,11 @@ use crate::{
     ThinDielectric,
 };
 
-/// Declares an enum of models, and hands its questions on to them. Those marked `from` also convert into it.
+/// Declares an enum of models, and hands its questions on to them, inlined as the first line says. Those marked `from` also
+/// convert into it.
 macro_rules! any {
     (
+        #[$inline:meta]
         $(#[$enum_doc:meta])* $any:ident;
         $($(#[$doc:meta])* $name:ident($model:ty) $(, $from:ident)?;)*
     ) => {
@@ -22,7 +24,7 @@ macro_rules! any {
         }
 
         impl Bsdf for $any<'_> {
-            #[inline]
+            #[$inline]
             fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
                 match self { $($any::$name(model) => model.eval(wo, wi),)* }
             }
@@ -30,7 +32,7 @@ macro_rules! any {
             fn sample(&self, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
                 match self { $($any::$name(model) => model.sample(wo, u_lobe, u),)* }
             }
-            #[inline]
+            #[$inline]
             fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
                 match self { $($any::$name(model) => model.pdf(wo, wi),)* }
             }
@@ -59,6 +61,7 @@ macro_rules! any {
 }
 
 any! {
+    #[inline(always)]
     /// Any model that fills its surface.
     AnyModel;
     /// Lambertian reflection.
@@ -98,6 +101,7 @@ any! {
 }
 
 any! {
+    #[inline]
     /// Any model, with or without holes, or several in one place. `'a` is the lifetime of the material's tables.
     #[expect(clippy::large_enum_variant, reason = "a box would be an allocation at every hit of a blend")]
     AnyBsdf;

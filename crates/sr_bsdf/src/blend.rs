@@ -53,15 +53,37 @@ impl<'a> Part<'a> {
         })
     }
 
-    /// f |cos θᵢ|: the cosine is that of the inner frame.
-    fn f_cos(&self, wo: Vec3, wi: Vec3) -> Rgb {
-        let (wi, dimming) = self.inward_dimmed(wi);
-        if dimming > 0.0 { self.model.eval(self.inward(wo), wi) * (dimming * wi.z.abs()) } else { Rgb::ZERO }
+    /// Is its frame that of the surface?
+    #[inline]
+    fn is_in_place(&self) -> bool {
+        self.steps[0].is_none()
     }
 
+    /// f.
+    #[inline(always)]
+    fn f(&self, wo: Vec3, wi: Vec3) -> Rgb {
+        if self.is_in_place() { self.model.eval(wo, wi) } else { self.f_in_frame(&wo, &wi) }
+    }
+
+    /// f, the cosine being that of the inner frame; 0 in the surface itself, where it would be infinite.
+    #[inline(never)]
+    fn f_in_frame(&self, wo: &Vec3, wi: &Vec3) -> Rgb {
+        let (inside, dimming) = self.inward_dimmed(*wi);
+        if !(dimming > 0.0) || wi.z == 0.0 {
+            return Rgb::ZERO;
+        }
+        self.model.eval(self.inward(*wo), inside) * (dimming * inside.z.abs() / wi.z.abs())
+    }
+
+    #[inline(always)]
     fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        let (wi, dimming) = self.inward_dimmed(wi);
-        if dimming > 0.0 { self.model.pdf(self.inward(wo), wi) } else { 0.0 }
+        if self.is_in_place() { self.model.pdf(wo, wi) } else { self.pdf_in_frame(&wo, &wi) }
+    }
+
+    #[inline(never)]
+    fn pdf_in_frame(&self, wo: &Vec3, wi: &Vec3) -> f32 {
+        let (inside, dimming) = self.inward_dimmed(*wi);
+        if dimming > 0.0 { self.model.pdf(self.inward(*wo), inside) } else { 0.0 }
     }
 
     fn sample(&self, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
@@ -107,11 +129,6 @@ impl<'a> Blend<'a> {
         self.parts().map(normal).sum::<Vec3>().try_normalize().unwrap_or(Vec3::Z)
     }
 
-    /// Σ shareᵢ fᵢ |cos θᵢ|, each with the cosine of its own frame.
-    fn f_cos(&self, wo: Vec3, wi: Vec3) -> Rgb {
-        self.parts().map(|part| part.share * part.f_cos(wo, wi)).sum()
-    }
-
     /// A direction drawn by one part, with the density and the value of all.
     fn sample_part(&self, picked: &Part<'a>, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
         let s = picked.sample(wo, u_lobe, u)?;
@@ -122,14 +139,21 @@ impl<'a> Blend<'a> {
         let others = || self.parts().filter(|part| !std::ptr::eq(*part, picked));
         let own = picked.share * s.pdf;
         let pdf = own + others().map(|part| part.share * part.pdf(wo, s.wi)).sum::<f32>();
-        let f_cos = s.weight * own + others().map(|part| part.share * part.f_cos(wo, s.wi)).sum::<Rgb>();
+        let f = others().map(|part| part.share * part.f(wo, s.wi)).sum::<Rgb>();
+        let f_cos = s.weight * own + f * s.wi.z.abs();
         (pdf.is_finite() && pdf > 0.0).then(|| BsdfSample { weight: f_cos / pdf, pdf, ..s })
     }
 }
 
+/// Loops, and models inlined in them: directions that are handed on through memory cost more than a model does.
 impl Bsdf for Blend<'_> {
+    #[inline(always)]
     fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
-        if wi.z == 0.0 { Rgb::ZERO } else { self.f_cos(wo, wi) / wi.z.abs() }
+        let mut f = Rgb::ZERO;
+        for part in self.parts() {
+            f += part.share * part.f(wo, wi);
+        }
+        f
     }
 
     fn sample(&self, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
@@ -150,8 +174,13 @@ impl Bsdf for Blend<'_> {
         })
     }
 
+    #[inline(always)]
     fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        self.parts().map(|part| part.share * part.pdf(wo, wi)).sum()
+        let mut pdf = 0.0;
+        for part in self.parts() {
+            pdf += part.share * part.pdf(wo, wi);
+        }
+        pdf
     }
 
     fn lobes(&self) -> Lobes {

@@ -7,6 +7,7 @@ use sr_sampling::warp::CosineHemisphere;
 use crate::albedo_table::{AlbedoTable, mean_of_diffuse};
 use crate::conductor::Metal;
 use crate::interface::{dielectric, reflect, reflect_about};
+use crate::microfacet::Facet;
 use crate::rough_coat::mean_where_it_jumps;
 use crate::{Bsdf, BsdfSample, Lobes, Microfacet, MicrofacetKind, Rgb, RoughConductor};
 
@@ -116,9 +117,9 @@ impl<'a> CoatedConductor<'a> {
         let bent = wi.z / (eta * eta * wi_in.z);
         let mut pdf = p_metal * self.metal.pdf(wo_in, wi_in) * bent + p_wide * CosineHemisphere.pdf(wi);
         if let Some(coat) = coat {
-            let m = (wo + wi).normalize_or_zero();
-            f += dielectric(wo.dot(m), *eta).reflectance * coat.reflection(wo, wi, m);
-            pdf += p_coat * coat.reflection_pdf(wo, m);
+            let mirror = Facet::between(wo, wi);
+            f += dielectric(mirror.half_cos(), *eta).reflectance * coat.reflection(wo, wi, &mirror);
+            pdf += p_coat * coat.reflection_pdf(wo, &mirror);
         }
         (f, pdf)
     }

@@ -16,14 +16,15 @@ impl MicrofacetShape for Ggx {
     }
 
     #[inline(always)]
-    fn d(self, slope_squared: f32, cos: f32) -> f32 {
-        let q = slope_squared + cos * cos;
-        1.0 / (q * q)
+    fn d(self, slope_squared: f32, cos_squared: f32, length_squared: f32) -> f32 {
+        // A normal without a length, between opposite directions, is nowhere.
+        let ratio = length_squared / (slope_squared + cos_squared).max(f32::MIN_POSITIVE);
+        ratio * ratio
     }
 
     #[inline(always)]
-    fn projected_area(self, cos: f32, spread: f32) -> f32 {
-        0.5 * (cos + (cos * cos + spread * spread).sqrt())
+    fn projected_area(self, cos: f32, spread_squared: f32) -> f32 {
+        0.5 * (cos + (cos * cos + spread_squared).sqrt())
     }
 
     /// The normals are halfway between `w` and a uniform point of the spherical cap that a hemisphere

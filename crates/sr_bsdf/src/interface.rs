@@ -30,15 +30,16 @@ pub fn dielectric(cos_i: f32, eta: f32) -> DielectricSplit {
     if eta == 1.0 {
         return DielectricSplit { reflectance: 0.0, transmittance: 1.0, cos_t: c, eta };
     }
-    let cos_t_squared = 1.0 - (1.0 - c * c) / (eta * eta);
+    let cos_t_squared = 1.0 - (1.0 - c * c) * (1.0 / (eta * eta));
     if cos_t_squared <= 0.0 {
         return DielectricSplit { reflectance: 1.0, transmittance: 0.0, cos_t: 0.0, eta };
     }
     let cos_t = cos_t_squared.sqrt();
     // Of the squared field, light polarised across (s) and in (p) the plane of incidence loses 4 c η cₜ over
     // (c + η cₜ)² and (η c + cₜ)² to the far side.
-    let (s, p) = (1.0 / (c + eta * cos_t), 1.0 / (eta * c + cos_t));
-    let transmittance = (2.0 * c * eta * cos_t * (s * s + p * p)).min(1.0);
+    let (s, p) = (c + eta * cos_t, eta * c + cos_t);
+    let both = s * p;
+    let transmittance = (2.0 * c * eta * cos_t * ((s * s + p * p) / (both * both))).min(1.0);
     DielectricSplit { reflectance: 1.0 - transmittance, transmittance, cos_t, eta }
 }
 
@@ -56,16 +57,13 @@ pub fn conductor(cos_i: f32, eta: Rgb, k: Rgb) -> Rgb {
     let a_b_squared = sqrt(real_part * real_part + 4.0 * eta * eta * k * k);
     let a = sqrt((0.5 * (a_b_squared + real_part)).max(Rgb::ZERO));
     let two_a_cos = 2.0 * cos_i * a;
-    let s = ratio(a_b_squared + cos_squared, two_a_cos);
-    let p = s * ratio(a_b_squared * cos_squared + sin_squared * sin_squared, two_a_cos * sin_squared);
-    0.5 * (s + p)
-}
-
-/// (x − y) / (x + y) for x ≥ y ≥ 0, with the limit at grazing incidence, 1, where both are 0.
-#[inline(always)]
-fn ratio(x: Rgb, y: Rgb) -> Rgb {
-    let sum = x + y;
-    Rgb::select(sum.cmpgt(Rgb::ZERO), (x - y).max(Rgb::ZERO) / sum, Rgb::ONE)
+    // s = (x − y) / (x + y) for s-polarised light, and p = s (v − w) / (v + w); their mean by one division.
+    let (x, y) = (a_b_squared + cos_squared, two_a_cos);
+    let (v, w) = (a_b_squared * cos_squared + sin_squared * sin_squared, two_a_cos * sin_squared);
+    let below = (x + y) * (v + w);
+    let mean = (x - y).max(Rgb::ZERO) * v.max(w) / below;
+    // The limit where nothing is left to divide: all is reflected.
+    Rgb::select(below.cmpgt(Rgb::ZERO), mean, Rgb::ONE)
 }
 
 #[inline(always)]

@@ -10,6 +10,7 @@ use sr_sampling::warp::CosineHemisphere;
 
 use crate::disney::{r0, schlick_weight};
 use crate::interface::{dielectric, reflect_about, refract_about};
+use crate::microfacet::Facet;
 use crate::rough_dielectric::{flip, refracting_facet};
 use crate::{AlbedoTable, Bsdf, BsdfSample, Ggx, Lobes, Microfacet, Rgb};
 
@@ -244,7 +245,7 @@ impl MetallicRoughness {
         if wi.z > 0.0 {
             let m = (wo + wi).normalize_or_zero();
             let f = self.inside_fresnel(wo.dot(m));
-            let mirrored = self.gloss.reflection_pdf(wo, m);
+            let mirrored = self.gloss.reflection_pdf(wo, &Facet::of(m));
             let value = f * (self.transmits() * mirrored / self.gloss.projected_area(wi));
             return (value, f.max_element() * mirrored);
         }
@@ -285,7 +286,7 @@ impl MetallicRoughness {
                 let mirrored = flip(wi);
                 let m = (wo + mirrored).normalize_or_zero();
                 let transmits = 1.0 - self.dielectric_fresnel(wo.dot(m)).max_element();
-                let pdf = self.gloss.reflection_pdf(wo, m);
+                let pdf = self.gloss.reflection_pdf(wo, &Facet::of(m));
                 let scale = self.transmits() * transmits * self.passes(wo.z, mirrored.z);
                 let f = self.i.base_color * (scale * pdf / self.gloss.projected_area(mirrored));
                 return (f, p_through * pdf);
@@ -296,11 +297,11 @@ impl MetallicRoughness {
         }
         let m = (wo + wi).normalize_or_zero();
         let cos = wo.dot(m);
-        let gloss_pdf = self.gloss.reflection_pdf(wo, m);
+        let gloss_pdf = self.gloss.reflection_pdf(wo, &Facet::of(m));
         let gloss = self.gloss_fresnel(cos) * (gloss_pdf / self.gloss.projected_area(wi));
         let transmits = 1.0 - self.dielectric_fresnel(cos).max_element();
         let base = self.i.base_color * (self.diffuses() * transmits * FRAC_1_PI);
-        let coat_pdf = self.coat.reflection_pdf(wo, m);
+        let coat_pdf = self.coat.reflection_pdf(wo, &Facet::of(m));
         let coat = self.coat_fresnel(cos) * coat_pdf / self.coat.projected_area(wi);
         let uncoated = (1.0 - self.coat_fresnel(wo.z)) * (1.0 - self.coat_fresnel(wi.z));
         let mut f = (gloss + base) * self.passes(wo.z, wi.z) + Rgb::splat(coat);

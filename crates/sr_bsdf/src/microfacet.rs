@@ -18,6 +18,36 @@ use crate::{MicrofacetKind, MicrofacetShape};
 pub struct Microfacet<S = MicrofacetKind> {
     shape: S,
     alpha: Vec2,
+    /// Of `alpha`: what divisions by it are done with.
+    inverse: Vec2,
+}
+
+/// The normal of a facet, of any length: what a half vector is before it is normalised. Densities do not need more.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Facet {
+    normal: Vec3,
+    length_squared: f32,
+}
+
+impl Facet {
+    /// The mirror between two directions.
+    #[inline(always)]
+    pub fn between(wo: Vec3, wi: Vec3) -> Self {
+        let normal = wo + wi;
+        Self { normal, length_squared: normal.length_squared() }
+    }
+
+    /// Of a unit normal.
+    #[inline(always)]
+    pub fn of(m: Vec3) -> Self {
+        Self { normal: m, length_squared: 1.0 }
+    }
+
+    /// The cosine between the normal and either of the two unit vectors that it is the half of.
+    #[inline(always)]
+    pub fn half_cos(&self) -> f32 {
+        (0.5 * self.length_squared.sqrt()).min(1.0)
+    }
 }
 
 impl Microfacet {
@@ -32,7 +62,8 @@ impl<S: MicrofacetShape> Microfacet<S> {
     #[inline(always)]
     pub fn new(shape: S, alpha_x: f32, alpha_y: f32) -> Self {
         let (low, high) = (Vec2::splat(Microfacet::MIN_ALPHA), Vec2::splat(Microfacet::MAX_ALPHA));
-        Self { shape, alpha: Vec2::new(alpha_x, alpha_y).max(low).min(high) }
+        let alpha = Vec2::new(alpha_x, alpha_y).max(low).min(high);
+        Self { shape, alpha, inverse: alpha.recip() }
     }
 
     /// The same roughness in all directions.
@@ -50,7 +81,7 @@ impl<S: MicrofacetShape> Microfacet<S> {
     /// The same distribution, of a shape that is known at run time.
     #[inline]
     pub fn of_any_shape(&self) -> Microfacet {
-        Microfacet { shape: self.kind(), alpha: self.alpha }
+        Microfacet { shape: self.kind(), alpha: self.alpha, inverse: self.inverse }
     }
 
     /// Roughness along x and y.
@@ -62,18 +93,22 @@ impl<S: MicrofacetShape> Microfacet<S> {
     /// D(m): area of facets with normal `m`, per area of surface and solid angle, in sr⁻¹.
     #[inline(always)]
     pub fn d(&self, m: Vec3) -> f32 {
-        if m.z <= 0.0 {
-            return 0.0;
-        }
-        let slope = Vec2::new(m.x, m.y) / self.alpha;
-        self.shape.d(slope.length_squared(), m.z) * FRAC_1_PI / (self.alpha.x * self.alpha.y)
+        self.facets(&Facet::of(m))
+    }
+
+    /// D of a facet.
+    #[inline(always)]
+    fn facets(&self, Facet { normal, length_squared }: &Facet) -> f32 {
+        let slope = Vec2::new(normal.x, normal.y) * self.inverse;
+        let d = self.shape.d(slope.length_squared(), normal.z * normal.z, *length_squared);
+        if normal.z > 0.0 { d * (FRAC_1_PI * self.inverse.x * self.inverse.y) } else { 0.0 }
     }
 
     /// σ(w) = |cos θ| (1 + Λ(w)): the area of facets seen from `w`, per area of surface. Positive.
     #[inline(always)]
     pub fn projected_area(&self, w: Vec3) -> f32 {
-        let spread = (self.alpha * Vec2::new(w.x, w.y)).length();
-        self.shape.projected_area(w.z.abs(), spread)
+        let spread = self.alpha * Vec2::new(w.x, w.y);
+        self.shape.projected_area(w.z.abs(), spread.length_squared())
     }
 
     /// Smith's G₁(w): the fraction of the facets facing `w` that are seen from there.
@@ -99,18 +134,18 @@ impl<S: MicrofacetShape> Microfacet<S> {
         wo.dot(m).max(0.0) * self.d(m) / self.projected_area(wo)
     }
 
-    /// D G / (4 cos θₒ cos θᵢ), in sr⁻¹: facets with normal `m` that are mirrors between `wo` and `wi`.
+    /// D G / (4 cos θₒ cos θᵢ), in sr⁻¹: the facets that are mirrors between `wo` and `wi`.
     #[inline(always)]
-    pub(crate) fn reflection(&self, wo: Vec3, wi: Vec3, m: Vec3) -> f32 {
-        self.d(m) / (4.0 * self.projected_area(wo) * self.projected_area(wi))
+    pub(crate) fn reflection(&self, wo: Vec3, wi: Vec3, mirror: &Facet) -> f32 {
+        self.facets(mirror) / (4.0 * self.projected_area(wo) * self.projected_area(wi))
     }
 
-    /// The density in sr⁻¹ of `wo` mirrored about a visible normal, where that normal is `m`.
+    /// The density in sr⁻¹ of `wo` mirrored about a visible normal, where that normal is the facet's.
     ///
     /// The visible normals' density over dwᵢ/dm = 4 wo · m.
     #[inline(always)]
-    pub(crate) fn reflection_pdf(&self, wo: Vec3, m: Vec3) -> f32 {
-        self.d(m) / (4.0 * self.projected_area(wo))
+    pub(crate) fn reflection_pdf(&self, wo: Vec3, mirror: &Facet) -> f32 {
+        self.facets(mirror) / (4.0 * self.projected_area(wo))
     }
 }
 
@@ -169,6 +204,23 @@ mod tests {
                     let got = f64::from(distribution.projected_area(w));
                     assert!((got / area - 1.0).abs() < 2e-3, "{distribution:?}, {w}: {got}, not {area}");
                 }
+            }
+        }
+    }
+
+    /// A half vector needs no unit length: the density is that of its direction; without a length it is nowhere.
+    #[test]
+    fn facets_are_of_any_length() {
+        let (wo, wi) = (Vec3::new(0.6, 0.0, 0.8), Vec3::new(-0.36, 0.48, 0.8));
+        let (mirror, m) = (Facet::between(wo, wi), (wo + wi).normalize());
+        assert!((mirror.half_cos() - wo.dot(m)).abs() < 1e-6);
+        for kind in KINDS {
+            let distribution = Microfacet::new(kind, 0.2, 0.5);
+            let (at_mirror, expected) = (distribution.facets(&mirror), distribution.d(m));
+            assert!((at_mirror / expected - 1.0).abs() < 1e-5, "{kind:?}: {at_mirror}, not {expected}");
+            for z in [0.0, 1e-30, 1e-20, 1e-10, 1e-5] {
+                let grazing = Facet::between(Vec3::new(1.0, 0.0, z), Vec3::new(-1.0, 0.0, z));
+                assert!(distribution.facets(&grazing).is_finite(), "{kind:?} {z}");
             }
         }
     }

@@ -6,6 +6,7 @@ use sr_sampling::warp::CosineHemisphere;
 
 use crate::disney::{self, Base, ClearcoatNormals, r0, schlick, tint};
 use crate::interface::{DielectricSplit, dielectric, reflect_about, refract_about};
+use crate::microfacet::Facet;
 use crate::rough_dielectric::{flip, refracting_facet};
 use crate::{Bsdf, BsdfSample, Ggx, Lobes, Microfacet, Rgb};
 
@@ -168,7 +169,7 @@ impl Principled {
         let &Pair { wo, wi, eta, is_front } = pair;
         let cos = wo.dot(m);
         let split = dielectric(cos, eta);
-        let mirrored = self.distribution.reflection_pdf(wo, m);
+        let mirrored = self.distribution.reflection_pdf(wo, &Facet::of(m));
         let mut f = self.fresnel(cos, &split, is_front) * (mirrored / self.distribution.projected_area(wi));
         let mut pdf = self.main(is_front) * (1.0 - self.transmits(&split, is_front)) * mirrored;
         if !is_front {

@@ -7,6 +7,7 @@ use std::f32::consts::FRAC_1_PI;
 
 use crate::disney::{self, Base, r0, schlick, tint};
 use crate::interface::{dielectric, reflect_about};
+use crate::microfacet::Facet;
 use crate::rough_dielectric::flip;
 use crate::{Bsdf, BsdfSample, Ggx, Lobes, Microfacet, Rgb};
 
@@ -110,7 +111,7 @@ impl PrincipledThin {
         let diffuse = 1.0 - self.spec_trans;
         let cosine_pdf = CosineHemisphere.pdf(wi.with_z(wi.z.abs()));
         let lobe = |d: &Microfacet<Ggx>| {
-            let mirrored = d.reflection_pdf(wo, m);
+            let mirrored = d.reflection_pdf(wo, &Facet::of(m));
             (mirrored / d.projected_area(wi), mirrored)
         };
         if wi.z < 0.0 {

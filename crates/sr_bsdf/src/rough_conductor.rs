@@ -4,6 +4,7 @@ use glam::{Vec2, Vec3};
 
 use crate::conductor::Metal;
 use crate::interface::reflect_about;
+use crate::microfacet::Facet;
 use crate::{Bsdf, BsdfSample, Lobes, Microfacet, MicrofacetKind, MicrofacetShape, Rgb};
 
 /// A surface of small metal mirrors, seen from the side of +Z only (Torrance & Sparrow 1967).
@@ -36,8 +37,8 @@ impl<S: MicrofacetShape> Bsdf for RoughConductor<S> {
         if wo.z <= 0.0 || wi.z <= 0.0 {
             return Rgb::ZERO;
         }
-        let m = (wo + wi).normalize_or_zero();
-        self.distribution.reflection(wo, wi, m) * self.metal.reflectance(wo.dot(m))
+        let mirror = Facet::between(wo, wi);
+        self.distribution.reflection(wo, wi, &mirror) * self.metal.reflectance(mirror.half_cos())
     }
 
     #[inline(always)]
@@ -47,7 +48,7 @@ impl<S: MicrofacetShape> Bsdf for RoughConductor<S> {
         }
         let m = self.distribution.sample_visible(wo, u);
         let wi = reflect_about(wo, m);
-        let pdf = self.distribution.reflection_pdf(wo, m);
+        let pdf = self.distribution.reflection_pdf(wo, &Facet::of(m));
         let weight = self.metal.reflectance(wo.dot(m)) * self.distribution.g1(wi);
         (wi.z > 0.0 && pdf > 0.0).then_some(BsdfSample { wi, weight, pdf, delta: false, eta: 1.0 })
     }
@@ -57,7 +58,7 @@ impl<S: MicrofacetShape> Bsdf for RoughConductor<S> {
         if wo.z <= 0.0 || wi.z <= 0.0 {
             return 0.0;
         }
-        self.distribution.reflection_pdf(wo, (wo + wi).normalize_or_zero())
+        self.distribution.reflection_pdf(wo, &Facet::between(wo, wi))
     }
 
     #[inline(always)]

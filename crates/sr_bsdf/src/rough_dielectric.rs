@@ -3,6 +3,7 @@
 use glam::{Vec2, Vec3};
 
 use crate::interface::{dielectric, reflect_about, refract_about};
+use crate::microfacet::Facet;
 use crate::{Bsdf, BsdfSample, Lobes, Microfacet, MicrofacetKind, MicrofacetShape, Rgb};
 
 /// A surface of small smooth interfaces (Walter et al. 2007).
@@ -85,9 +86,9 @@ impl<S: MicrofacetShape> Bsdf for RoughDielectric<S> {
             return Rgb::ZERO;
         }
         if wi.z > 0.0 {
-            let m = (wo + wi).normalize_or_zero();
-            let f = dielectric(wo.dot(m), eta).reflectance;
-            return self.reflectance * (f * self.distribution.reflection(wo, wi, m));
+            let mirror = Facet::between(wo, wi);
+            let f = dielectric(mirror.half_cos(), eta).reflectance;
+            return self.reflectance * (f * self.distribution.reflection(wo, wi, &mirror));
         }
         let Some(facet) = refracting_facet(wo, wi, eta) else { return Rgb::ZERO };
         let area = self.distribution.projected_area(wo) * self.distribution.projected_area(wi);
@@ -112,7 +113,7 @@ impl<S: MicrofacetShape> Bsdf for RoughDielectric<S> {
             if wi.z <= 0.0 {
                 return None;
             }
-            let pdf = split.reflectance * self.distribution.reflection_pdf(wo, m);
+            let pdf = split.reflectance * self.distribution.reflection_pdf(wo, &Facet::of(m));
             BsdfSample { wi, weight: self.reflectance, pdf, delta: false, eta: 1.0 }
         } else {
             let wi = refract_about(wo, m, split);
@@ -137,8 +138,9 @@ impl<S: MicrofacetShape> Bsdf for RoughDielectric<S> {
             return 0.0;
         }
         if wi.z > 0.0 {
-            let m = (wo + wi).normalize_or_zero();
-            return dielectric(wo.dot(m), eta).reflectance * self.distribution.reflection_pdf(wo, m);
+            let mirror = Facet::between(wo, wi);
+            return dielectric(mirror.half_cos(), eta).reflectance
+                * self.distribution.reflection_pdf(wo, &mirror);
         }
         refracting_facet(wo, wi, eta)
             .map_or(0.0, |facet| facet.factor * eta * eta * self.distribution.visible_pdf(wo, facet.m))

@@ -7,6 +7,7 @@ use sr_sampling::Distribution;
 use sr_sampling::warp::CosineHemisphere;
 
 use crate::interface::{dielectric, reflect_about};
+use crate::microfacet::Facet;
 use crate::plastic::{LobeChoice, LobeProbabilities, base_below};
 use crate::rough_coat::RoughPlasticTables;
 use crate::{Bsdf, BsdfSample, Lobes, Microfacet, MicrofacetKind, MicrofacetShape, Rgb};
@@ -64,12 +65,12 @@ impl<'a, S: MicrofacetShape> RoughPlastic<'a, S> {
         RoughPlastic { coat, distribution: distribution.of_any_shape(), eta, specular, base, choice }
     }
 
-    /// f and the density for two directions above the surface whose halfway vector is `m`.
+    /// f and the density for two directions above the surface, with the facet that mirrors one into the other.
     #[inline(always)]
-    fn eval_pdf(&self, wo: Vec3, wi: Vec3, m: Vec3, p: LobeProbabilities, t_o: f32) -> (Rgb, f32) {
+    fn eval_pdf(&self, wo: Vec3, wi: Vec3, mirror: &Facet, p: LobeProbabilities, t_o: f32) -> (Rgb, f32) {
         let distribution = &self.distribution;
-        let mirrored = distribution.reflection_pdf(wo, m);
-        let f = dielectric(wo.dot(m), self.eta).reflectance;
+        let mirrored = distribution.reflection_pdf(wo, mirror);
+        let f = dielectric(mirror.half_cos(), self.eta).reflectance;
         let specular = self.specular * (f * mirrored / distribution.projected_area(wi));
         let diffuse = self.base * (t_o * self.coat.transmittance(wi.z) * FRAC_1_PI);
         (specular + diffuse, p.specular * mirrored + p.diffuse * CosineHemisphere.pdf(wi))
@@ -85,9 +86,9 @@ impl<'a, S: MicrofacetShape> RoughPlastic<'a, S> {
 impl<S: MicrofacetShape> Bsdf for RoughPlastic<'_, S> {
     #[inline(always)]
     fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
-        let m = (wo + wi).normalize_or_zero();
+        let mirror = Facet::between(wo, wi);
         let t_o = self.coat.transmittance(wo.z);
-        let (f, _) = self.eval_pdf(wo, wi, m, self.lobe_probabilities(t_o), t_o);
+        let (f, _) = self.eval_pdf(wo, wi, &mirror, self.lobe_probabilities(t_o), t_o);
         Rgb::select(BVec3::splat(wo.z > 0.0 && wi.z > 0.0), f, Rgb::ZERO)
     }
 
@@ -98,8 +99,8 @@ impl<S: MicrofacetShape> Bsdf for RoughPlastic<'_, S> {
         let mirrored = reflect_about(wo, self.distribution.sample_visible(wo, u));
         let scattered = CosineHemisphere.sample(u).map_or(Vec3::ZERO, |s| s.value);
         let wi = Vec3::select(BVec3::splat(u_lobe < p.specular), mirrored, scattered);
-        let m = (wo + wi).normalize_or_zero();
-        let (f, pdf) = self.eval_pdf(wo, wi, m, p, t_o);
+        let mirror = Facet::between(wo, wi);
+        let (f, pdf) = self.eval_pdf(wo, wi, &mirror, p, t_o);
         let weight = f * (wi.z / pdf);
         let is_above = (wo.z > 0.0) & (wi.z > 0.0);
         (is_above & (pdf > f32::MIN_POSITIVE) & (weight != Rgb::ZERO)).then_some(BsdfSample {
@@ -114,8 +115,9 @@ impl<S: MicrofacetShape> Bsdf for RoughPlastic<'_, S> {
     #[inline(always)]
     fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
         let p = self.lobe_probabilities(self.coat.transmittance(wo.z));
-        let m = (wo + wi).normalize_or_zero();
-        let pdf = p.specular * self.distribution.reflection_pdf(wo, m) + p.diffuse * CosineHemisphere.pdf(wi);
+        let mirror = Facet::between(wo, wi);
+        let pdf =
+            p.specular * self.distribution.reflection_pdf(wo, &mirror) + p.diffuse * CosineHemisphere.pdf(wi);
         if wo.z > 0.0 && wi.z > 0.0 { pdf } else { 0.0 }
     }
 

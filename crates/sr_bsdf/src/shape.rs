@@ -15,11 +15,11 @@ pub trait MicrofacetShape: Copy + Debug + PartialEq {
     /// Which it is.
     fn kind(self) -> MicrofacetKind;
 
-    /// π αₓ α_y D, from the squared length of (mₓ/αₓ, m_y/α_y) and m_z.
-    fn d(self, slope_squared: f32, cos: f32) -> f32;
+    /// π αₓ α_y D of a normal m of any length, from the squares of (mₓ/αₓ, m_y/α_y), of m_z and of m.
+    fn d(self, slope_squared: f32, cos_squared: f32, length_squared: f32) -> f32;
 
-    /// |cos θ| (1 + Λ), from |cos θ| and the length of (αₓ wₓ, α_y w_y).
-    fn projected_area(self, cos: f32, spread: f32) -> f32;
+    /// |cos θ| (1 + Λ), from |cos θ| and the squared length of (αₓ wₓ, α_y w_y).
+    fn projected_area(self, cos: f32, spread_squared: f32) -> f32;
 
     /// Draws a normal (not of unit length) of those that the unit vector `w` sees, w.z > 0.
     fn sample_visible(self, w: Vec3, u: Vec2) -> Vec3;
@@ -40,19 +40,19 @@ impl MicrofacetShape for MicrofacetKind {
         self
     }
 
-    #[inline]
-    fn d(self, slope_squared: f32, cos: f32) -> f32 {
+    #[inline(always)]
+    fn d(self, slope_squared: f32, cos_squared: f32, length_squared: f32) -> f32 {
         match self {
-            Self::Beckmann => Beckmann.d(slope_squared, cos),
-            Self::Ggx => Ggx.d(slope_squared, cos),
+            Self::Beckmann => Beckmann.d(slope_squared, cos_squared, length_squared),
+            Self::Ggx => Ggx.d(slope_squared, cos_squared, length_squared),
         }
     }
 
-    #[inline]
-    fn projected_area(self, cos: f32, spread: f32) -> f32 {
+    #[inline(always)]
+    fn projected_area(self, cos: f32, spread_squared: f32) -> f32 {
         match self {
-            Self::Beckmann => Beckmann.projected_area(cos, spread),
-            Self::Ggx => Ggx.projected_area(cos, spread),
+            Self::Beckmann => Beckmann.projected_area(cos, spread_squared),
+            Self::Ggx => Ggx.projected_area(cos, spread_squared),
         }
     }
 
