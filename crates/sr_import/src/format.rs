@@ -25,7 +25,7 @@ impl Format {
             let mut lines = text.lines().map(str::trim_start).filter(|line| !line.is_empty());
             let is_pbrt = lines.next().is_some_and(|line| {
                 let word = line.split(|c: char| !c.is_ascii_alphabetic()).next().unwrap_or("");
-                line.starts_with('#') || pbrt::DIRECTIVES.contains(&word)
+                line.starts_with('#') || pbrt::is_directive(word)
             });
             if is_pbrt { Self::Pbrt } else { Self::Mitsuba }
         })

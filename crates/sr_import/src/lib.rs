@@ -32,6 +32,7 @@ use sr_scene::{Diagnostic, Diagnostics, SceneDesc, Span};
 pub use mitsuba::Origin;
 pub use mitsuba::node::{Child, Node, OtherName, Property, Reference, SpectrumValue, Value};
 pub use mitsuba::plugins;
+pub use pbrt::support_table as pbrt_support_table;
 
 /// How to load a scene file.
 #[derive(Clone, Debug, Default)]

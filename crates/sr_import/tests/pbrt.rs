@@ -450,3 +450,13 @@ fn a_mistake_is_shown_with_its_place_a_guess_and_what_happens() {
          \"radius\"?; it is ignored"
     );
 }
+
+/// After a change of the lists, put there what this prints.
+#[test]
+fn the_documentation_says_what_becomes_of_everything() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/import.md");
+    let page = std::fs::read_to_string(path).unwrap();
+    let table = sr_import::pbrt_support_table();
+    assert!(table.lines().count() > 40, "no table, no evidence");
+    assert!(page.contains(&table), "docs/import.md lacks this:\n{table}");
+}

@@ -1,14 +1,12 @@
 //! Cameras. pbrt's look along +Z, with +X to the right and +Y up; ours have +X to the left.
 
 use glam::{DMat4, DVec2, DVec3, Vec2};
-use sr_scene::{CameraDesc, Diagnostic, FilmDesc, FovAxis, Lens, Projection, Span};
+use sr_scene::{CameraDesc, FilmDesc, FovAxis, Lens, Projection, Span};
 
 use super::Reader;
 use super::params::Params;
+use super::support::{CAMERAS, unsupported};
 use super::syntax::Kind;
-use crate::values::shown;
-
-const KINDS: &[&str] = &["perspective", "orthographic", "spherical", "realistic"];
 
 /// Where the scene begins and ends for cameras: nowhere.
 const CLIP: (f32, f32) = (1e-4, 1e30);
@@ -93,10 +91,9 @@ impl Reader<'_> {
             }
             other => {
                 if other != "perspective" {
-                    let message = format!("a camera \"{}\" is not supported", shown(other));
-                    let note = Diagnostic::warning("pbrt::unsupported-camera", &params.span, message)
-                        .guess(other, KINDS.iter().copied())
-                        .consequence("a perspective camera at the same place is used");
+                    let usual = "a perspective camera at the same place is used";
+                    let code = "pbrt::unsupported-camera";
+                    let note = unsupported(CAMERAS, code, &params.span, "a camera", other, usual);
                     self.notes().push(note);
                 }
                 self.perspective(&mut params, &screen, aspect)

@@ -1,16 +1,14 @@
 //! Films and pixel filters.
 
-use sr_scene::{Crop, Diagnostic, FilmDesc, FilterDesc};
+use sr_scene::{Crop, FilmDesc, FilterDesc};
 
 use super::Reader;
 use super::params::Params;
+use super::support::{FILMS, FILTERS, unsupported};
 use super::syntax::Kind;
-use crate::values::shown;
 
 /// What a film makes of light: pbrt's imaging ratio.
 pub struct Exposure(pub f32);
-
-const FILMS: &[&str] = &["rgb", "gbuffer", "spectral"];
 
 impl Reader<'_> {
     /// `shutter`: for how long it is open.
@@ -23,10 +21,8 @@ impl Reader<'_> {
         let mut desc = FilmDesc { width: 1280, height: 720, crop: None, filter, sample_border: true };
         let Some((kind, mut params)) = film else { return (desc, Exposure(1.0)) };
         if kind != "rgb" {
-            let message = format!("a film \"{}\" is not supported", shown(&kind));
-            let note = Diagnostic::warning("pbrt::unsupported-film", &params.span, message)
-                .guess(&kind, FILMS.iter().copied())
-                .consequence("an RGB image is made");
+            let usual = "an RGB image is made";
+            let note = unsupported(FILMS, "pbrt::unsupported-film", &params.span, "a film", &kind, usual);
             self.notes().push(note);
         }
         desc.width = self.size(&mut params, "xresolution", desc.width);
@@ -131,10 +127,8 @@ impl Reader<'_> {
             }
             _ => {
                 params.use_all();
-                let message = format!("a filter \"{}\" is not supported", shown(&kind));
-                let note = Diagnostic::warning("pbrt::filter", &params.span, message)
-                    .guess(&kind, ["box", "triangle", "gaussian", "mitchell", "sinc"])
-                    .consequence("a Gaussian is used");
+                let consequence = "a Gaussian is used";
+                let note = unsupported(FILTERS, "pbrt::filter", &params.span, "a filter", &kind, consequence);
                 self.notes().push(note);
                 usual
             }

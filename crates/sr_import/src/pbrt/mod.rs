@@ -3,8 +3,8 @@
 //! In: text. Out: calls of an [`Assembly`]. A file is carried out as it is read, directive by directive.
 //!
 //! - `syntax`: bytes to words, numbers and parameters. `params`: looking parameters up.
-//! - `reader`: the directives that keep state: transforms, attributes, objects, other files.
-//! - `color`: values with a color. `texture`, `material`, `light`, `shape`, `camera`, `film`, `options`: what they say.
+//! - `reader`: one directive after the other, attributes, other files. `transform`, `object`: what else keeps state.
+//! - `support`: what there is, and what becomes of it. `color`: values with a color. `texture`, `material`, `light`, `shape`, `camera`, `film`, `options`: what they say.
 //!
 //! Light transport is RGB here and spectral there: spectra become what the CIE's observer sees, see
 //! [`crate::spectra`].
@@ -14,13 +14,16 @@ mod color;
 mod film;
 mod light;
 mod material;
+mod object;
 mod options;
 mod params;
 mod reader;
 mod shape;
 mod state;
+mod support;
 mod syntax;
 mod texture;
+mod transform;
 
 use std::collections::{HashMap, HashSet};
 use std::path::PathBuf;
@@ -30,9 +33,14 @@ use sr_scene::{Diagnostic, Diagnostics, MaterialId, SceneDesc, Span};
 use crate::assembly::Assembly;
 use crate::files;
 use params::Notes;
-pub use reader::DIRECTIVES;
 use state::{Saved, State};
+pub use support::table as support_table;
 use texture::FloatTexture;
+
+/// Is this one of the words that a scene may begin with?
+pub fn is_directive(word: &str) -> bool {
+    support::names(support::DIRECTIVES).any(|directive| directive == word)
+}
 
 /// Text is read as UTF-8; what is none becomes `\u{fffd}`, which no keyword has.
 pub fn read_text(path: &std::path::Path) -> Result<String, String> {

@@ -6,6 +6,7 @@ use sr_scene::{Diagnostic, Settings, Span};
 use super::Reader;
 use super::film::Exposure;
 use super::params::Params;
+use super::support::{INTEGRATORS, Support, unsupported};
 use super::syntax::{Result, Scanner};
 use crate::values::shown;
 
@@ -28,25 +29,6 @@ impl Default for Options {
         Self { camera: None, film: None, filter: None, exposure: 1.0, is_done: false, has_integrator: false }
     }
 }
-
-/// All integrators of pbrt-v4.
-const INTEGRATORS: &[&str] = &[
-    "path",
-    "volpath",
-    "bdpt",
-    "mlt",
-    "sppm",
-    "simplepath",
-    "simplevolpath",
-    "lightpath",
-    "randomwalk",
-    "ao",
-    "function",
-];
-
-/// Those that see the same as a path tracer where there is no medium.
-const ALIKE: &[&str] =
-    &["path", "volpath", "bdpt", "mlt", "sppm", "simplepath", "simplevolpath", "lightpath", "randomwalk"];
 
 /// All samplers of pbrt-v4, and their usual numbers of samples.
 const SAMPLERS: &[(&str, i32)] = &[
@@ -91,11 +73,12 @@ impl Reader<'_> {
     pub(super) fn integrator(&mut self, kind: &str, mut params: Params) {
         self.options.has_integrator = true;
         self.out.settings.span = params.span.clone();
-        if !ALIKE.contains(&kind) {
-            let message = format!("an integrator \"{}\" is not supported", shown(kind));
-            let note = Diagnostic::warning("pbrt::unsupported-integrator", &params.span, message)
-                .guess(kind, INTEGRATORS.iter().copied())
-                .consequence("paths are traced");
+        let is_path =
+            |&(name, support): &(&str, Support)| name == kind && !matches!(support, Support::Reported(_));
+        if !INTEGRATORS.iter().any(is_path) {
+            let code = "pbrt::unsupported-integrator";
+            let note =
+                unsupported(INTEGRATORS, code, &params.span, "an integrator", kind, "paths are traced");
             self.notes().push(note);
         }
         // pbrt counts the bounces, and we the edges of a path.

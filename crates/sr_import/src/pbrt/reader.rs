@@ -1,16 +1,15 @@
-//! Directives, one by one: those that keep state are carried out here, the others where their subject is.
+//! Directives, one by one: attributes and other files are carried out here, the others where their subject is.
 
 use std::rc::Rc;
 
-use glam::{Affine3A, DMat4, DVec3};
-use sr_scene::{Diagnostic, GroupDesc, InstanceDesc, SourceId, Span};
+use glam::DMat4;
+use sr_scene::{Diagnostic, SourceId, Span};
 
-use super::params::{Notes, Params};
+use super::params::Params;
 use super::state::{Active, Inherited, Saved, State};
 use super::syntax::{Result, Scanner, SyntaxError};
-use super::{Reader, read_text};
+use super::{Reader, read_text, support};
 use crate::color_space::ColorSpace;
-use crate::look_at::look_at;
 use crate::values::shown;
 
 /// Files within files, and attributes within attributes.
@@ -24,54 +23,6 @@ const MAX_INCLUDED_BYTES: usize = 1 << 30;
 
 /// Parameters that `Attribute` may give to one kind of directive, and values of one of them: each directive has them.
 const MAX_ATTRIBUTES: usize = 256;
-
-/// Instances that a scene may have.
-const MAX_INSTANCES: usize = 1 << 22;
-
-/// All directives there are, for guesses.
-pub const DIRECTIVES: &[&str] = &[
-    "Accelerator",
-    "ActiveTransform",
-    "AreaLightSource",
-    "Attribute",
-    "AttributeBegin",
-    "AttributeEnd",
-    "Camera",
-    "ColorSpace",
-    "ConcatTransform",
-    "CoordSysTransform",
-    "CoordinateSystem",
-    "Film",
-    "Identity",
-    "Import",
-    "Include",
-    "Integrator",
-    "LightSource",
-    "LookAt",
-    "MakeNamedMaterial",
-    "MakeNamedMedium",
-    "Material",
-    "MediumInterface",
-    "NamedMaterial",
-    "ObjectBegin",
-    "ObjectEnd",
-    "ObjectInstance",
-    "Option",
-    "PixelFilter",
-    "ReverseOrientation",
-    "Rotate",
-    "Sampler",
-    "Scale",
-    "Shape",
-    "Texture",
-    "Transform",
-    "TransformBegin",
-    "TransformEnd",
-    "TransformTimes",
-    "Translate",
-    "WorldBegin",
-    "WorldEnd",
-];
 
 impl Reader<'_> {
     /// Carries out a text. What cannot be understood is an error, and the end.
@@ -185,108 +136,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// A directive that changes the current transform; false if `word` is none.
-    fn transform(&mut self, word: &str, s: &mut Scanner<'_>, span: &Span) -> Result<bool> {
-        let mut v = [0.0; 16];
-        let step = match word {
-            "Identity" => {
-                self.set_ctm([DMat4::IDENTITY; 2]);
-                return Ok(true);
-            }
-            "Translate" => {
-                s.numbers(&mut v[..3])?;
-                DMat4::from_translation(DVec3::new(v[0], v[1], v[2]))
-            }
-            "Scale" => {
-                s.numbers(&mut v[..3])?;
-                DMat4::from_scale(DVec3::new(v[0], v[1], v[2]))
-            }
-            "Rotate" => {
-                s.numbers(&mut v[..4])?;
-                match DVec3::new(v[1], v[2], v[3]).try_normalize() {
-                    Some(axis) => DMat4::from_axis_angle(axis, v[0].to_radians()),
-                    None => {
-                        self.error("pbrt::bad-transform", span, "the axis of a rotation cannot be zero");
-                        DMat4::IDENTITY
-                    }
-                }
-            }
-            "LookAt" => {
-                s.numbers(&mut v[..9])?;
-                let point = |i: usize| DVec3::new(v[i], v[i + 1], v[i + 2]);
-                match look_at(point(0), point(3), point(6)) {
-                    Ok(world_from_camera) => world_from_camera.inverse(),
-                    Err(reason) => {
-                        self.error("pbrt::bad-transform", span, reason);
-                        DMat4::IDENTITY
-                    }
-                }
-            }
-            "Transform" => {
-                s.numbers(&mut v)?;
-                self.set_ctm([DMat4::from_cols_array(&v); 2]);
-                return Ok(true);
-            }
-            "ConcatTransform" => {
-                s.numbers(&mut v)?;
-                DMat4::from_cols_array(&v)
-            }
-            "CoordinateSystem" => {
-                let name = s.string()?.0.into_owned();
-                self.coordinate_systems.insert(name, [self.state.ctm, self.state.end_ctm]);
-                return Ok(true);
-            }
-            "CoordSysTransform" => {
-                let (name, bytes) = s.string()?;
-                self.coordinate_system(&name, &Span { source: span.source, bytes });
-                return Ok(true);
-            }
-            "ActiveTransform" => {
-                let (which, bytes) = s.word();
-                self.state.active = match which {
-                    "StartTime" => Active::Start,
-                    "EndTime" => Active::End,
-                    "All" => Active::All,
-                    _ => {
-                        let message = "StartTime, EndTime or All was expected here".into();
-                        return Err(SyntaxError { message, bytes });
-                    }
-                };
-                return Ok(true);
-            }
-            "TransformTimes" => {
-                s.numbers(&mut v[..2])?;
-                return Ok(true);
-            }
-            _ => return Ok(false),
-        };
-        self.set_ctm([self.state.ctm * step, self.state.end_ctm * step]);
-        Ok(true)
-    }
-
-    /// At the start and at the end, where they are active.
-    fn set_ctm(&mut self, [start, end]: [DMat4; 2]) {
-        if self.state.active != Active::End {
-            self.state.ctm = start;
-        }
-        if self.state.active != Active::Start {
-            self.state.end_ctm = end;
-        }
-    }
-
-    fn coordinate_system(&mut self, name: &str, span: &Span) {
-        match self.coordinate_systems.get(name) {
-            Some(&ctm) => self.set_ctm(ctm),
-            None => {
-                let message = format!("there is no coordinate system \"{}\"", shown(name));
-                let mut notes = Notes { list: self.out.d, said: &mut self.said };
-                let known = self.coordinate_systems.keys();
-                Self::unresolved(&mut notes, span, message, name, known, "the transform stays as it is");
-            }
-        }
-    }
-
-    fn save(&mut self, saved: Saved) {
+    pub(super) fn save(&mut self, saved: Saved) {
         if self.stack.len() >= MAX_DEPTH * 16 {
             let (Saved::Attribute(_, span) | Saved::Transform(_, span) | Saved::Object(_, span)) = saved;
             self.error("pbrt::too-deep", &span, "attributes are nested too deeply");
@@ -312,45 +162,6 @@ impl Reader<'_> {
                 self.stack.extend(saved);
             }
         }
-    }
-
-    fn object_begin(&mut self, name: &str, span: Span) {
-        if self.object.is_some() {
-            self.error("pbrt::unbalanced", &span, "an object begins inside another one");
-            return;
-        }
-        let group = self.out.groups.len();
-        self.out.groups.push(GroupDesc { shapes: Vec::new() });
-        if self.objects.insert(name.to_owned(), group).is_some() {
-            let message = format!("the object \"{}\" is described twice", shown(name));
-            self.warn("pbrt::duplicate-name", &span, message, "instances after this show the second one");
-        }
-        self.object = Some(group);
-        self.save(Saved::Object(Box::new(self.state.clone()), span));
-    }
-
-    fn object_instance(&mut self, name: &str, span: &Span) {
-        if self.object.is_some() {
-            self.error("pbrt::unbalanced", span, "an instance inside of an object");
-            return;
-        }
-        let Some(&group) = self.objects.get(name) else {
-            let message = format!("there is no object \"{}\"", shown(name));
-            let mut notes = Notes { list: self.out.d, said: &mut self.said };
-            Self::unresolved(&mut notes, span, message, name, self.objects.keys(), "nothing is shown here");
-            return;
-        };
-        if self.out.instances.len() >= MAX_INSTANCES {
-            let message = format!("more than {MAX_INSTANCES} instances");
-            self.error("pbrt::too-many-instances", span, message);
-            self.is_broken = true;
-            return;
-        }
-        if self.out.groups[group].shapes.is_empty() {
-            return;
-        }
-        let world_from_group = Affine3A::from_mat4(self.state.ctm.as_mat4());
-        self.out.instances.push(InstanceDesc { group: group as u32, world_from_group, span: span.clone() });
     }
 
     fn include(&mut self, name: &str, span: &Span) {
@@ -443,7 +254,8 @@ impl Reader<'_> {
 
 fn unknown(word: &str, bytes: std::ops::Range<usize>) -> SyntaxError {
     // A guess is part of the sentence: an error of the syntax has no place for hints.
-    let guess = Diagnostic::error("", &Span::default(), "").guess(word, DIRECTIVES.iter().copied()).hint;
+    let guess =
+        Diagnostic::error("", &Span::default(), "").guess(word, support::names(support::DIRECTIVES)).hint;
     let guess = guess.map(|hint| format!("; {hint}")).unwrap_or_default();
     SyntaxError { message: format!("\"{}\" is not a directive of pbrt{guess}", shown(word)), bytes }
 }

@@ -34,23 +34,25 @@ pub fn color_of_light(spectrum: impl Fn(f64) -> f64) -> Option<DVec3> {
     (xyz.y > 0.0).then(|| rgb_from_xyz(xyz / xyz.y))
 }
 
-/// η and k of a metal in linear RGB, so that it reflects what the spectra do where light meets it at a right angle.
+/// η and k of a metal in linear RGB, so that it reflects what the spectra do where light meets it at a right angle from a
+/// medium of the index `above`.
 ///
 /// η is the mean as a reflectance's would be; k is what makes the reflectance right.
-pub fn metal(eta: impl Fn(f64) -> f64, k: impl Fn(f64) -> f64) -> (DVec3, DVec3) {
+pub fn metal(eta: impl Fn(f64) -> f64, k: impl Fn(f64) -> f64, above: f64) -> (DVec3, DVec3) {
+    let (eta, k) = (|w: f64| eta(w) / above, |w: f64| k(w) / above);
     let reflected = reflectance(|w| {
         let (n, k2) = (eta(w), k(w).powi(2));
         ((n - 1.0).powi(2) + k2) / ((n + 1.0).powi(2) + k2)
     });
     let reflected = reflected.clamp(DVec3::ZERO, DVec3::splat(0.9999));
-    let n = reflectance(&eta).max(DVec3::splat(1e-3));
+    let n = reflectance(eta).max(DVec3::splat(1e-3));
     // An index beyond these reflects more than that, whatever it absorbs.
     let root = DVec3::new(reflected.x.sqrt(), reflected.y.sqrt(), reflected.z.sqrt());
     let most = (1.0 + root) / (1.0 - root);
     let n = n.clamp(1.0 / most, most);
     let k2 = (reflected * (n + 1.0) * (n + 1.0) - (n - 1.0) * (n - 1.0)) / (1.0 - reflected);
     let k = DVec3::new(k2.x.max(0.0).sqrt(), k2.y.max(0.0).sqrt(), k2.z.max(0.0).sqrt());
-    (n, k)
+    (n * above, k * above)
 }
 
 /// The value between samples (wavelength in nm, value), linearly; 0 outside.
@@ -140,7 +142,7 @@ mod tests {
             let (eta, k) = (|w| interpolate(&eta, w), |w| interpolate(&k, w));
             let normal = |n: f64, k: f64| ((n - 1.0).powi(2) + k * k) / ((n + 1.0).powi(2) + k * k);
             let expected = reflectance(|w| normal(eta(w), k(w)));
-            let (n, k) = metal(eta, k);
+            let (n, k) = metal(eta, k, 1.0);
             let got = DVec3::new(normal(n.x, k.x), normal(n.y, k.y), normal(n.z, k.z));
             // Gold is redder than sRGB can show.
             close(got, expected.min(DVec3::ONE).into(), 1e-3);

@@ -11,15 +11,12 @@ use std::f32::consts::PI;
 use std::sync::Arc;
 
 use glam::{DMat3, DMat4, DVec3, Mat4};
-use sr_scene::{Diagnostic, IntensityProfile, LightDesc, Rgb};
+use sr_scene::{IntensityProfile, LightDesc, Rgb};
 
 use super::Reader;
 use super::params::Params;
-use crate::values::shown;
+use super::support::{LIGHTS, unsupported};
 pub use area::AreaLight;
-
-/// All kinds of lights, for guesses.
-const KINDS: &[&str] = &["point", "spot", "distant", "infinite", "goniometric", "projection"];
 
 impl Reader<'_> {
     /// `LightSource "point"` and parameters.
@@ -37,10 +34,9 @@ impl Reader<'_> {
             "projection" => self.projection(&mut params),
             _ => {
                 params.use_all();
-                let message = format!("a light \"{}\" is not supported", shown(kind));
-                let note = Diagnostic::warning("pbrt::unsupported-light", &params.span, message)
-                    .guess(kind, KINDS.iter().copied())
-                    .consequence("it is left out, and the picture is darker");
+                let consequence = "it is left out, and the picture is darker";
+                let code = "pbrt::unsupported-light";
+                let note = unsupported(LIGHTS, code, &params.span, "a light", kind, consequence);
                 self.notes().push(note);
                 None
             }

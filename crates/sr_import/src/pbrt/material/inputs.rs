@@ -1,6 +1,13 @@
 //! What materials are made from: albedos, indices, roughness.
 
-use super::*;
+use glam::DVec3;
+use sr_scene::{ColorInput, Rgb, ScalarInput};
+
+use super::{Curve, FloatTexture, GREY, Params, Reader, is_smooth};
+use crate::color_space::ColorSpace;
+use crate::pbrt::color::known;
+use crate::pbrt::syntax::Kind;
+use crate::spectra;
 
 impl Reader<'_> {
     /// A color of at most 1.
@@ -102,11 +109,12 @@ impl Reader<'_> {
     }
 
     /// The complex index of a metal, copper by default, and what scales its reflection. With a `reflectance`, the index
-    /// that has it at a right angle.
+    /// that has it at a right angle. `above`: the index of what is on the metal.
     pub(super) fn complex_index(
         &mut self,
         params: &mut Params,
         [eta, k]: [&'static str; 2],
+        above: f32,
     ) -> (Option<(ColorInput, ColorInput)>, ColorInput) {
         let one = ColorInput::Constant(Rgb::ONE);
         if params.has("reflectance") {
@@ -126,23 +134,24 @@ impl Reader<'_> {
         }
         let mut input = |name, default: &str| match self.textured(params, name) {
             Some(texture) => Err(texture),
-            None => Ok(self
-                .curve(params, name)
-                .map(|(_, curve)| curve)
-                .or_else(|| super::super::color::known(default))),
+            None => Ok(self.curve(params, name).map(|(_, curve)| curve).or_else(|| known(default))),
         };
         let (eta, k) = (input(eta, "metal-Cu-eta"), input(k, "metal-Cu-k"));
         if let (Ok(Some(Curve::Samples(eta))), Ok(Some(Curve::Samples(k)))) = (&eta, &k) {
-            let (eta, k) = spectra::metal(|w| spectra::interpolate(eta, w), |w| spectra::interpolate(k, w));
-            let constant = |color: glam::DVec3| ColorInput::Constant(color.as_vec3());
+            let (eta, k) = spectra::metal(
+                |w| spectra::interpolate(eta, w),
+                |w| spectra::interpolate(k, w),
+                above.into(),
+            );
+            let constant = |color: DVec3| ColorInput::Constant(color.as_vec3());
             return (Some((constant(eta), constant(k))), one);
         }
         // RGB indices are what they are, in whatever color space.
         let constant = |curve: Option<Curve>| match curve {
-            Some(Curve::Rgb(color)) => ColorInput::Constant(color.max(glam::DVec3::ZERO).as_vec3()),
+            Some(Curve::Rgb(color)) => ColorInput::Constant(color.max(DVec3::ZERO).as_vec3()),
             Some(curve) => {
-                let color = curve.surface(crate::color_space::ColorSpace::Srgb);
-                ColorInput::Constant(color.max(glam::DVec3::ZERO).as_vec3())
+                let color = curve.surface(ColorSpace::Srgb);
+                ColorInput::Constant(color.max(DVec3::ZERO).as_vec3())
             }
             None => one,
         };
@@ -153,7 +162,7 @@ impl Reader<'_> {
 
     /// The texture that `name` names, if it names one.
     fn textured(&mut self, params: &mut Params, name: &'static str) -> Option<ColorInput> {
-        params.find(name, &[super::super::syntax::Kind::Texture])?;
+        params.find(name, &[Kind::Texture])?;
         self.color_or_texture(params, name)
     }
 }

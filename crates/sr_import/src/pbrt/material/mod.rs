@@ -4,33 +4,16 @@ mod coat;
 mod inputs;
 
 use sr_scene::{
-    ColorInput, Diagnostic, MaterialDesc, MaterialId, MicrofacetKind, Rgb, ScalarInput, Span, TextureDesc,
-    Tilting,
+    ColorInput, MaterialDesc, MaterialId, MicrofacetKind, Rgb, ScalarInput, Span, TextureDesc, Tilting,
 };
 
 use super::Reader;
 use super::color::Curve;
 use super::params::{Notes, Params};
+use super::support::{MATERIALS, unsupported};
 use super::texture::FloatTexture;
 use crate::images::Decode;
-use crate::spectra;
 use crate::values::shown;
-
-/// All kinds of materials, for guesses.
-const KINDS: &[&str] = &[
-    "diffuse",
-    "coateddiffuse",
-    "coatedconductor",
-    "conductor",
-    "dielectric",
-    "thindielectric",
-    "diffusetransmission",
-    "mix",
-    "interface",
-    "measured",
-    "hair",
-    "subsurface",
-];
 
 /// The default reflectance.
 const GREY: Rgb = Rgb::splat(0.5);
@@ -165,7 +148,8 @@ impl Reader<'_> {
                 diffuse_reflectance,
                 specular_reflectance,
                 nonlinear: true,
-                multiscatter: true,
+                // pbrt loses what bounces between facets.
+                multiscatter: false,
             },
         }
     }
@@ -183,7 +167,8 @@ impl Reader<'_> {
             self.warn("pbrt::bad-value", &params.span, message, "1 is used");
         }
         let layer = self.layer(params, eta);
-        let (eta_k, specular_reflectance) = self.complex_index(params, ["conductor.eta", "conductor.k"]);
+        let (eta_k, specular_reflectance) =
+            self.complex_index(params, ["conductor.eta", "conductor.k"], eta.max(1.0));
         MaterialDesc::CoatedConductor {
             kind: MicrofacetKind::Ggx,
             coat_alpha: self.constant_alpha(coat, params).unwrap_or(0.0),
@@ -196,7 +181,7 @@ impl Reader<'_> {
 
     fn conductor(&mut self, params: &mut Params) -> MaterialDesc {
         let alpha = self.alpha(params, ["uroughness", "vroughness", "roughness"], 0.0);
-        let (eta_k, specular_reflectance) = self.complex_index(params, ["eta", "k"]);
+        let (eta_k, specular_reflectance) = self.complex_index(params, ["eta", "k"], 1.0);
         match is_smooth(&alpha) {
             true => MaterialDesc::Conductor { eta_k, specular_reflectance },
             false => MaterialDesc::RoughConductor {
@@ -264,31 +249,24 @@ impl Reader<'_> {
 
     /// What is shown instead of a material that is not supported.
     fn stand_in(&mut self, kind: &str, params: &mut Params) -> Made {
-        let (desc, consequence) = match kind {
-            "subsurface" => {
-                let diffuse_reflectance = self.albedo(params, "reflectance", GREY);
-                let eta = self.eta(params, "eta", 1.33);
-                let specular_reflectance = ColorInput::Constant(Rgb::ONE);
-                (
-                    MaterialDesc::Plastic { eta, diffuse_reflectance, specular_reflectance, nonlinear: true },
-                    "a coated diffuse one of its \"reflectance\" (0.5 without) is shown instead",
-                )
-            }
+        let desc = match kind {
+            "subsurface" => MaterialDesc::Plastic {
+                diffuse_reflectance: self.albedo(params, "reflectance", GREY),
+                eta: self.eta(params, "eta", 1.33),
+                specular_reflectance: ColorInput::Constant(Rgb::ONE),
+                nonlinear: true,
+            },
             "hair" => {
                 // Its color, or the brown that pbrt takes without one.
                 let reflectance = self.albedo(params, "color", Rgb::new(0.22, 0.11, 0.05));
-                (MaterialDesc::Diffuse { reflectance }, "a diffuse one of its \"color\" is shown instead")
+                MaterialDesc::Diffuse { reflectance }
             }
-            _ => {
-                let reflectance = self.albedo(params, "reflectance", GREY);
-                (MaterialDesc::Diffuse { reflectance }, "a diffuse one of reflectance 0.5 is shown instead")
-            }
+            _ => MaterialDesc::Diffuse { reflectance: self.albedo(params, "reflectance", GREY) },
         };
         params.use_all();
-        let message = format!("a material \"{}\" is not supported", shown(kind));
-        let note = Diagnostic::warning("pbrt::unsupported-material", &params.span, message)
-            .guess(kind, KINDS.iter().copied())
-            .consequence(consequence);
+        let usual = "a diffuse one of reflectance 0.5 is shown instead";
+        let code = "pbrt::unsupported-material";
+        let note = unsupported(MATERIALS, code, &params.span, "a material", kind, usual);
         self.notes().push(note);
         Made::Opaque(desc)
     }

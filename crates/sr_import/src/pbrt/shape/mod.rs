@@ -9,16 +9,13 @@ mod quadric;
 use std::sync::Arc;
 
 use glam::DMat3;
-use sr_scene::{Diagnostic, Emission, Geometry, MaterialDesc, MaterialId, ScalarInput, ShapeDesc, Span};
+use sr_scene::{Emission, Geometry, MaterialDesc, MaterialId, ScalarInput, ShapeDesc, Span};
 
 use super::Reader;
 use super::params::Params;
+use super::support::{SHAPES, unsupported};
 use crate::assembly::MeshSource;
 use crate::mesh::{Convention, Placement};
-use crate::values::shown;
-
-const KINDS: &[&str] =
-    &["trianglemesh", "plymesh", "bilinearmesh", "loopsubdiv", "sphere", "disk", "cylinder", "curve"];
 
 /// How far the back of a two-sided light is from its front, as a part of its size: pbrt's have no thickness.
 const THICKNESS: f32 = 1e-4;
@@ -92,10 +89,8 @@ impl Reader<'_> {
             "bilinearmesh" => self.bilinear_mesh(&mut params, emits),
             _ => {
                 params.use_all();
-                let message = format!("a shape \"{}\" is not supported", shown(kind));
-                let note = Diagnostic::warning("pbrt::unsupported-shape", &span, message)
-                    .guess(kind, KINDS.iter().copied())
-                    .consequence("it is left out");
+                let note =
+                    unsupported(SHAPES, "pbrt::unsupported-shape", &span, "a shape", kind, "it is left out");
                 self.notes().push(note);
                 Vec::new()
             }

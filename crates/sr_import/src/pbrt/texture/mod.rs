@@ -5,33 +5,17 @@ mod image;
 use std::sync::Arc;
 
 use glam::{Affine2, Vec2};
-use sr_scene::{ColorInput, Diagnostic, Filter, Image, Pixels, Rgb, ScalarInput, Span, TextureDesc, Wrap};
+use sr_scene::{ColorInput, Filter, Image, Pixels, Rgb, ScalarInput, Span, TextureDesc, Wrap};
 
 use super::Reader;
 use super::params::{Notes, Params};
+use super::support::{TEXTURES, unsupported};
 use super::syntax::{Kind, Result, Scanner, Values};
 use crate::values::shown;
 pub use image::FloatImage;
 
 /// What is shown instead of textures that are not supported.
 const STAND_IN: f32 = 0.5;
-
-/// All classes of textures, for guesses.
-const CLASSES: &[&str] = &[
-    "constant",
-    "scale",
-    "mix",
-    "directionmix",
-    "bilerp",
-    "imagemap",
-    "checkerboard",
-    "dots",
-    "fbm",
-    "wrinkled",
-    "windy",
-    "marble",
-    "ptex",
-];
 
 /// A texture of numbers.
 #[derive(Clone, Debug)]
@@ -181,11 +165,9 @@ impl Reader<'_> {
         }
     }
 
-    fn unsupported_class(&mut self, class: &str, params: &Params, consequence: &str) {
-        let message = format!("a texture \"{}\" is not supported", shown(class));
-        let note = Diagnostic::warning("pbrt::unsupported-texture", &params.span, message)
-            .guess(class, CLASSES.iter().copied())
-            .consequence(consequence);
+    fn unsupported_class(&mut self, class: &str, params: &Params, unknown: &str) {
+        let code = "pbrt::unsupported-texture";
+        let note = unsupported(TEXTURES, code, &params.span, "a texture", class, unknown);
         self.notes().push(note);
     }
 
