@@ -17,7 +17,6 @@ const QUADRATURE: usize = 48;
 pub struct RoughPlasticTables {
     distribution: Microfacet,
     eta: f32,
-    is_lossless: bool,
     internal_reflectance: f32,
     /// Between two entries each: the first one, and how much higher the next one is.
     transmittance: [[f32; 2]; NODES - 1],
@@ -47,7 +46,7 @@ impl RoughPlasticTables {
         };
         let internal_reflectance =
             (0..NODES).map(|i| 2.0 * node(i) * reflectance_inside(node(i))).sum::<f32>() / NODES as f32;
-        Self::from_nodes(distribution, eta, false, internal_reflectance, transmittance)
+        Self::from_nodes(distribution, eta, internal_reflectance, transmittance)
     }
 
     /// Tables of a coating that loses nothing: what it does not reflect in one bounce it lets in, and the same is so from
@@ -70,13 +69,12 @@ impl RoughPlasticTables {
             .map(|(i, t)| step * step * ((i as f32) * (t[0] + t[1]) + (t[0] + 2.0 * t[1]) / 3.0))
             .sum();
         // Light may travel either way: the diffuse light that leaves is that which enters, over η².
-        Self::from_nodes(distribution, eta, true, 1.0 - mean / (eta * eta), transmittance)
+        Self::from_nodes(distribution, eta, 1.0 - mean / (eta * eta), transmittance)
     }
 
     fn from_nodes(
         distribution: Microfacet,
         eta: f32,
-        is_lossless: bool,
         internal_reflectance: f32,
         transmittance: [f32; NODES],
     ) -> Self {
@@ -86,7 +84,7 @@ impl RoughPlasticTables {
         }
         let last_transmittance = transmittance[NODES - 1];
         let transmittance = segments;
-        Self { distribution, eta, is_lossless, internal_reflectance, transmittance, last_transmittance }
+        Self { distribution, eta, internal_reflectance, transmittance, last_transmittance }
     }
 
     /// The same tables, made anew. A loop that looks things up in them while it writes elsewhere should have its own:
@@ -111,11 +109,6 @@ impl RoughPlasticTables {
     #[inline(always)]
     pub fn eta(&self) -> f32 {
         self.eta
-    }
-
-    /// Were they made by [`Self::lossless`]?
-    pub fn is_lossless(&self) -> bool {
-        self.is_lossless
     }
 
     /// The fraction of diffuse light from inside that the coating reflects, 2 ∫ R(μ) μ dμ.

@@ -26,7 +26,7 @@ pub trait MicrofacetShape: Copy + Debug + PartialEq {
 }
 
 /// A shape that is chosen at run time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum MicrofacetKind {
     /// Beckmann: Gaussian slopes.
     Beckmann,

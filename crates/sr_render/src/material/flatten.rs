@@ -5,7 +5,7 @@ use sr_scene::{ColorInput, MaterialDesc, MaterialId, Rgb, ScalarInput};
 
 use super::kind::Kind;
 use super::parts::{Factor, ModelSource, NormalSource, PartSource, Parts, StepSource, TiltSource};
-use super::uncommon::Tables;
+use super::tables::{MAX_TABLES, Orders, Tables};
 use super::{Face, Inputs, Materials, Queue, Side, Sources};
 
 /// More in one material than is done.
@@ -23,13 +23,21 @@ pub enum MaterialError {
         /// How many there can be.
         most: usize,
     },
+    /// Too many that have to be tabulated first.
+    #[error(
+        "this is one more than {MAX_TABLES} different rough coatings and materials with \"multiscatter\""
+    )]
+    TooManyTables {
+        /// The material.
+        material: MaterialId,
+    },
 }
 
 impl MaterialError {
     /// Which material it is about.
     pub fn material(&self) -> MaterialId {
         match self {
-            Self::TooMany { material, .. } => *material,
+            Self::TooMany { material, .. } | Self::TooManyTables { material } => *material,
         }
     }
 }
@@ -127,7 +135,7 @@ impl Unfinished {
 }
 
 impl Materials {
-    /// Flattens descriptions, which have been validated.
+    /// Flattens descriptions, which have been validated. Tables are made on rayon's current pool.
     ///
     /// # Errors
     /// If a material has too many models or frames.
@@ -140,12 +148,17 @@ impl Materials {
             parts: Parts::default(),
             tables: Tables::default(),
         };
+        let mut orders = Orders::default();
         for id in 0..descs.len() {
-            let Material { front, back } = all.flatten(descs, MaterialId(id as u32));
+            let Material { front, back } = all.flatten(descs, MaterialId(id as u32), &mut orders);
+            if orders.len() > MAX_TABLES {
+                return Err(MaterialError::TooManyTables { material: MaterialId(id as u32) });
+            }
             let front = all.add(front, id as u32)?;
             let back = back.map_or(Ok(front), |back| all.add(back, id as u32))?;
             all.faces.push([front, back]);
         }
+        (all.coats, all.tables) = orders.make();
         Ok(all)
     }
 
@@ -229,20 +242,25 @@ impl Materials {
         Ok(Face { side, queue: Queue::SINGLE, turn: 1.0, albedo: Rgb::ZERO, has_picture: false })
     }
 
-    fn flatten(&mut self, descs: &[MaterialDesc], MaterialId(id): MaterialId) -> Material {
+    fn flatten(
+        &mut self,
+        descs: &[MaterialDesc],
+        MaterialId(id): MaterialId,
+        orders: &mut Orders,
+    ) -> Material {
         match descs[id as usize] {
             MaterialDesc::TwoSided { front, back } => {
-                let (front, back) = (self.flatten(descs, front), self.flatten(descs, back));
+                let (front, back) = (self.flatten(descs, front, orders), self.flatten(descs, back, orders));
                 let mut back = back.front;
                 back.parts.iter_mut().for_each(|part| part.is_mirrored = true);
                 Material { front: front.front, back: Some(back) }
             }
-            MaterialDesc::Mask { opacity, inner } => self.flatten(descs, inner).with_sides(|side| {
+            MaterialDesc::Mask { opacity, inner } => self.flatten(descs, inner, orders).with_sides(|side| {
                 let factor = Factor { weight: opacity, is_rest: false };
                 *side = Unfinished { has_holes: true, ..std::mem::take(side).times(factor) };
             }),
             MaterialDesc::Blend { weight, materials } => {
-                let [first, second] = materials.map(|id| self.flatten(descs, id));
+                let [first, second] = materials.map(|id| self.flatten(descs, id, orders));
                 let blend = |first: Unfinished, second: Unfinished| {
                     let second = second.times(Factor { weight, is_rest: false });
                     first.times(Factor { weight, is_rest: true }).and(second)
@@ -254,13 +272,13 @@ impl Materials {
             }
             MaterialDesc::BumpMap { scale, texture, tilting, inner } => {
                 let normal = NormalSource::Bump { scale, texture };
-                self.flatten(descs, inner).tilted(TiltSource { normal, tilting, is_mirrored: false })
+                self.flatten(descs, inner, orders).tilted(TiltSource { normal, tilting, is_mirrored: false })
             }
             MaterialDesc::NormalMap { normal, tilting, inner } => {
                 let normal = NormalSource::Map(normal);
-                self.flatten(descs, inner).tilted(TiltSource { normal, tilting, is_mirrored: false })
+                self.flatten(descs, inner, orders).tilted(TiltSource { normal, tilting, is_mirrored: false })
             }
-            ref plain => self.model_source(plain).into(),
+            ref plain => self.model_source(plain, orders).into(),
         }
     }
 }

@@ -10,6 +10,7 @@ mod flatten;
 mod kind;
 mod model;
 mod parts;
+mod tables;
 mod uncommon;
 
 use std::ops::Range;
@@ -23,7 +24,7 @@ use kind::Kind;
 pub(crate) use kind::{COLORS, Inputs, Recipe, RecipeUser, SCALARS};
 use parts::Parts;
 pub(crate) use parts::Place;
-use uncommon::Tables;
+use tables::Tables;
 
 /// All materials of a scene.
 #[derive(Clone, Debug)]

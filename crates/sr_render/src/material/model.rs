@@ -1,10 +1,11 @@
-//! Descriptions of single models to what they are made from; tables are made here, once for all who share them.
+//! Descriptions of single models to what they are made from; tables that they share are ordered here.
 
-use sr_bsdf::{CoatedConductorTables, Microfacet, MicrofacetKind, RoughPlasticTables, SmoothCoat};
+use sr_bsdf::{MicrofacetKind, SmoothCoat};
 use sr_scene::{ColorInput, MaterialDesc, Rgb, ScalarInput};
 
 use super::kind::{COLORS, Kind, SCALARS};
 use super::parts::ModelSource;
+use super::tables::Orders;
 use super::uncommon::Uncommon;
 use super::{Materials, Sources};
 
@@ -23,7 +24,7 @@ impl Sources {
 
 impl Materials {
     /// What a description that nests nothing is made from.
-    pub(super) fn model_source(&mut self, desc: &MaterialDesc) -> ModelSource {
+    pub(super) fn model_source(&mut self, desc: &MaterialDesc, orders: &mut Orders) -> ModelSource {
         match *desc {
             MaterialDesc::Diffuse { reflectance } => self.common(Kind::Diffuse, &[reflectance], &[]),
             MaterialDesc::Dielectric { eta, specular_reflectance: r, specular_transmittance: t } => {
@@ -40,7 +41,7 @@ impl Materials {
                 specular_transmittance: transmittance,
                 multiscatter: true,
             } if x == y => {
-                let tables = self.tables.glass(microfacet_kind(kind), x, eta);
+                let tables = orders.glass(microfacet_kind(kind), x, eta);
                 Uncommon::CompensatedDielectric { tables, reflectance, transmittance }.into()
             }
             MaterialDesc::RoughDielectric {
@@ -65,7 +66,7 @@ impl Materials {
                 specular_reflectance: reflectance,
                 multiscatter: true,
             } if x == y => {
-                let table = self.tables.metal(microfacet_kind(kind), x);
+                let table = orders.metal(microfacet_kind(kind), x);
                 Uncommon::CompensatedConductor { table, eta_k, reflectance }.into()
             }
             MaterialDesc::RoughConductor { kind, alpha, eta_k, specular_reflectance: r, multiscatter: _ } => {
@@ -84,7 +85,7 @@ impl Materials {
                 nonlinear,
                 multiscatter,
             } => {
-                let coat = self.coat(microfacet_kind(kind), alpha, eta, multiscatter);
+                let coat = orders.coat(microfacet_kind(kind), alpha, eta, multiscatter) as u32;
                 self.common(Kind::RoughPlastic { coat, nonlinear }, &[d, s], &[])
             }
             MaterialDesc::Eon { reflectance, roughness } => Uncommon::Eon { reflectance, roughness }.into(),
@@ -103,8 +104,7 @@ impl Materials {
                 specular_reflectance: reflectance,
             } => {
                 let kind = microfacet_kind(kind);
-                self.tables.coated.push(CoatedConductorTables::new(kind, coat_alpha, eta, alpha));
-                let tables = self.tables.coated.len() - 1;
+                let tables = orders.coated(kind, coat_alpha, eta, alpha);
                 Uncommon::CoatedConductor { tables, eta_k, reflectance }.into()
             }
             MaterialDesc::Principled(principled) => Uncommon::Principled(principled).into(),
@@ -126,20 +126,6 @@ impl Materials {
             self.kinds.len() - 1
         });
         ModelSource::Common { kind: number as u32, sources: Sources::new(colors, scalars) }
-    }
-
-    /// The tables of a rough coating, shared by all materials with the same one.
-    fn coat(&mut self, kind: MicrofacetKind, alpha: f32, eta: f32, is_lossless: bool) -> u32 {
-        let wanted = Microfacet::isotropic(kind, alpha);
-        let is_it = |coat: &RoughPlasticTables| {
-            coat.is_lossless() == is_lossless && *coat.distribution() == wanted && coat.eta() == eta
-        };
-        let known = self.coats.iter().position(is_it);
-        known.unwrap_or_else(|| {
-            let new = if is_lossless { RoughPlasticTables::lossless } else { RoughPlasticTables::new };
-            self.coats.push(new(kind, alpha, eta));
-            self.coats.len() - 1
-        }) as u32
     }
 }
 

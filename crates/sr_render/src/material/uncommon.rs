@@ -1,14 +1,14 @@
 //! Models without a loop of their own: what each is made from, which may be many numbers, and how.
 
 use sr_bsdf::{
-    AlbedoTable, AnyModel, CoatedConductor, CoatedConductorTables, CompensatedConductor,
-    CompensatedDielectric, DielectricTables, DiffuseTransmission, Eon, MetallicRoughness,
-    MetallicRoughnessInputs, Microfacet, MicrofacetKind, OrenNayar, Principled, PrincipledInputs,
-    PrincipledThin, PrincipledThinInputs, Rgb,
+    AnyModel, CoatedConductor, CompensatedConductor, CompensatedDielectric, DiffuseTransmission, Eon,
+    MetallicRoughness, MetallicRoughnessInputs, OrenNayar, Principled, PrincipledInputs, PrincipledThin,
+    PrincipledThinInputs, Rgb,
 };
 use sr_scene::{ColorInput, MetallicRoughnessDesc, PrincipledDesc, PrincipledThinDesc, ScalarInput};
 
 use super::parts::{ModelSource, Place};
+use super::tables::Tables;
 
 /// What an uncommon model is made from.
 #[derive(Clone, Copy, Debug)]
@@ -46,35 +46,6 @@ pub(super) enum Uncommon {
     Principled(PrincipledDesc),
     PrincipledThin(PrincipledThinDesc),
     MetallicRoughness(MetallicRoughnessDesc),
-}
-
-/// What is the same at every point of uncommon models, shared by all that have the same.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Tables {
-    pub metals: Vec<(Microfacet, AlbedoTable)>,
-    pub glasses: Vec<DielectricTables>,
-    pub coated: Vec<CoatedConductorTables>,
-}
-
-impl Tables {
-    pub fn metal(&mut self, kind: MicrofacetKind, alpha: f32) -> usize {
-        let wanted = Microfacet::isotropic(kind, alpha);
-        let make = || (wanted, CompensatedConductor::table(kind, alpha));
-        find_or_push(&mut self.metals, |(known, _)| *known == wanted, make)
-    }
-
-    pub fn glass(&mut self, kind: MicrofacetKind, alpha: f32, eta: f32) -> usize {
-        let wanted = Microfacet::isotropic(kind, alpha);
-        let is_known = |t: &DielectricTables| *t.distribution() == wanted && t.eta() == eta;
-        find_or_push(&mut self.glasses, is_known, || DielectricTables::new(kind, alpha, eta))
-    }
-}
-
-fn find_or_push<T>(all: &mut Vec<T>, is_it: impl Fn(&T) -> bool, make: impl FnOnce() -> T) -> usize {
-    all.iter().position(is_it).unwrap_or_else(|| {
-        all.push(make());
-        all.len() - 1
-    })
 }
 
 impl From<Uncommon> for ModelSource {
