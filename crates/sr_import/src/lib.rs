@@ -25,6 +25,7 @@ mod pfm;
 mod spectra;
 mod values;
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use sr_scene::{Diagnostic, Diagnostics, SceneDesc, Span};
@@ -50,7 +51,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> (Option<SceneDesc>, Diagnosti
     match format::Format::of_name(&name).read(path) {
         Ok(text) => {
             let directory = path.parent().unwrap_or(Path::new("")).to_owned();
-            let scene = load_text(&name, &text, directory, options, &mut diagnostics);
+            let scene = load_text(&name, text.into(), directory, options, &mut diagnostics);
             (scene, diagnostics)
         }
         Err(reason) => {
@@ -70,7 +71,7 @@ pub fn load_str(
     options: &LoadOptions,
 ) -> (Option<SceneDesc>, Diagnostics) {
     let mut diagnostics = Diagnostics::default();
-    let scene = load_text(name, text, directory.to_owned(), options, &mut diagnostics);
+    let scene = load_text(name, text.into(), directory.to_owned(), options, &mut diagnostics);
     (scene, diagnostics)
 }
 
@@ -81,14 +82,14 @@ pub fn from_node(root: &Node, origin: &Origin, diagnostics: &mut Diagnostics) ->
 
 fn load_text(
     name: &str,
-    text: &str,
+    text: Cow<'_, str>,
     directory: PathBuf,
     options: &LoadOptions,
     diagnostics: &mut Diagnostics,
 ) -> Option<SceneDesc> {
     let directories = std::iter::once(directory).chain(options.search_paths.iter().cloned()).collect();
-    match format::Format::of_text(name, text) {
-        format::Format::Mitsuba => mitsuba::load(name, text, directories, &options.defines, diagnostics),
+    match format::Format::of_text(name, &text) {
+        format::Format::Mitsuba => mitsuba::load(name, &text, directories, &options.defines, diagnostics),
         format::Format::Pbrt => pbrt::load(name, text, directories, diagnostics),
     }
 }

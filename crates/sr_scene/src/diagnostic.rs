@@ -118,6 +118,15 @@ impl Sources {
         SourceId(u32::try_from(self.files.len() - 1).expect("fewer than 2³² sources"))
     }
 
+    /// Gives a source another text, usually one that was added empty: so that a long text can be read and then given
+    /// away, not copied.
+    pub fn set_text(&mut self, id: SourceId, text: impl Into<String>) {
+        if let Some(source) = self.files.get_mut(id.0 as usize) {
+            source.text = text.into();
+            source.places = Places::new(&source.text);
+        }
+    }
+
     /// The name and the text of a source; empty for one that is not known.
     pub fn get(&self, id: SourceId) -> (&str, &str) {
         self.files.get(id.0 as usize).map_or(("", ""), |source| (&source.name, &source.text))
@@ -174,6 +183,16 @@ impl fmt::Display for Severity {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn texts_can_be_given_later() {
+        let mut sources = Sources::default();
+        let source = sources.add("a", "");
+        sources.set_text(source, "1\n23");
+        assert_eq!(sources.get(source), ("a", "1\n23"));
+        assert_eq!(sources.line_column(&Span { source, bytes: 3..4 }), (2, 2));
+        sources.set_text(SourceId(7), "nobody's");
+    }
 
     #[test]
     fn guesses_are_names_that_were_not_given() {

@@ -25,6 +25,7 @@ mod syntax;
 mod texture;
 mod transform;
 
+use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::path::PathBuf;
 
@@ -51,15 +52,16 @@ pub fn read_text(path: &std::path::Path) -> Result<String, String> {
 /// Loads a scene from text. Files are looked for in `directories`.
 pub fn load(
     name: &str,
-    text: &str,
+    text: Cow<'_, str>,
     directories: Vec<PathBuf>,
     diagnostics: &mut Diagnostics,
 ) -> Option<SceneDesc> {
-    let source = diagnostics.sources.add(name, text);
+    let source = diagnostics.sources.add(name, "");
     let span = Span { source, bytes: 0..text.len().min(1) };
     let mut reader = Reader::new(directories, diagnostics);
     reader.open_files.push(PathBuf::from(name));
-    reader.run(text, source);
+    reader.run(&text, source);
+    reader.out.d.sources.set_text(source, text);
     reader.finish(&span)
 }
 

@@ -192,9 +192,10 @@ impl Reader<'_> {
             }
             Ok(text) => {
                 self.included_bytes += text.len();
-                let source = self.out.d.sources.add(path.display().to_string(), &*text);
+                let source = self.out.d.sources.add(path.display().to_string(), "");
                 self.open_files.push(path);
                 self.run(&text, source);
+                self.out.d.sources.set_text(source, text);
                 self.open_files.pop();
             }
             Err(reason) => {
