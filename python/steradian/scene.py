@@ -80,7 +80,8 @@ def load(
     """Loads a scene.
 
     Args:
-        source: a Mitsuba XML file (0.5, 2 or 3), a pbrt-v4 file, or a dictionary in the manner of Mitsuba's ``load_dict``:
+        source: a Mitsuba XML file (0.5, 2 or 3), a pbrt-v4 file, or a dictionary in the manner of Mitsuba's
+            ``load_dict``:
             ``{"type": "scene", "camera": {"type": "perspective", ...}, "box": {"type": "cube", ...}}``.
             Placements are 4x4 arrays or :class:`steradian.Transform`. A mesh may be given as
             ``{"type": "mesh", "vertices": (n, 3), "faces": (m, 3), "normals": (n, 3), "uvs": (n, 2)}``, the

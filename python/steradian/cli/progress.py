@@ -5,7 +5,7 @@ from __future__ import annotations
 import shutil
 import sys
 import time
-from typing import TextIO
+from typing import Self, TextIO
 
 from steradian.render import Progress
 
@@ -14,17 +14,19 @@ FIRST_LINE_SECONDS = 10.0
 """When output is no terminal: the first line comes after this time, each next after twice the time."""
 
 
-class ProgressBar:
-    """Shows :class:`steradian.Progress`; a context manager that leaves a clean line."""
+class StatusLine:
+    """How far something is: a bar that is rewritten on a terminal, elsewhere a line now and then.
 
-    def __init__(self, time_limit: float | None, stream: TextIO | None = None) -> None:
+    A context manager that leaves a clean line.
+    """
+
+    def __init__(self, stream: TextIO | None = None) -> None:
         self._stream = sys.stderr if stream is None else stream
         self._terminal = self._stream.isatty()
-        self._time_limit = time_limit
         self._next = 0.0 if self._terminal else FIRST_LINE_SECONDS
         self._start = time.monotonic()
 
-    def __enter__(self) -> ProgressBar:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -32,20 +34,39 @@ class ProgressBar:
             self._stream.write("\r\x1b[K")
             self._stream.flush()
 
-    def update(self, progress: Progress) -> None:
-        """Shows it, if it is time to."""
-        elapsed = time.monotonic() - self._start
-        if elapsed < self._next:
-            return
-        text = describe(progress, elapsed, self._time_limit)
+    def elapsed(self) -> float:
+        """Seconds since it was made."""
+        return time.monotonic() - self._start
+
+    def is_due(self) -> bool:
+        """Is it time to show something?"""
+        return self.elapsed() >= self._next
+
+    def show(self, text: str, done: float) -> None:
+        """Shows a text, and what is done, in [0, 1]."""
         if self._terminal:
+            self._next = self.elapsed() + REWRITE_SECONDS
             width = shutil.get_terminal_size().columns
-            self._next = elapsed + REWRITE_SECONDS
-            self._stream.write("\r\x1b[K" + bar(text, fraction(progress, elapsed, self._time_limit), width))
+            self._stream.write("\r\x1b[K" + bar(text, done, width))
         else:
-            self._next = 2 * elapsed
+            self._next = 2 * self.elapsed()
             self._stream.write(text + "\n")
         self._stream.flush()
+
+
+class ProgressBar(StatusLine):
+    """Shows :class:`steradian.Progress`."""
+
+    def __init__(self, time_limit: float | None, stream: TextIO | None = None) -> None:
+        super().__init__(stream)
+        self._time_limit = time_limit
+
+    def update(self, progress: Progress) -> None:
+        """Shows it, if it is time to."""
+        if self.is_due():
+            elapsed = self.elapsed()
+            text = describe(progress, elapsed, self._time_limit)
+            self.show(text, fraction(progress, elapsed, self._time_limit))
 
 
 def fraction(progress: Progress, elapsed: float, time_limit: float | None) -> float:

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import argparse
 import json
-import shutil
 import sys
-import time
 from itertools import groupby
 from pathlib import Path
 
 from steradian import verification
 from steradian.cli import outputs
-from steradian.cli.progress import bar, duration
+from steradian.cli.progress import StatusLine, duration
 from steradian.verification import Found, Row
 
 FAILED = 1
@@ -28,13 +26,18 @@ def verify(arguments: argparse.Namespace) -> int:
     if path is not None:
         outputs.check_writable(path)
     quiet = arguments.quiet or arguments.json
-    with _Progress(quiet) as progress:
+    with StatusLine() as status:
+
+        def show(done: int, total: int) -> None:
+            if not quiet and status.is_due():
+                status.show(f"{done} / {total} checks · {duration(status.elapsed())}", done / total)
+
         found = verification.run(
             arguments.name,
             seed=arguments.seed,
             failure_rate=arguments.failure_rate,
             threads=arguments.threads,
-            on_progress=progress.update,
+            on_progress=show,
         )
     if path is not None:
         outputs.write_text(path, verification.page(found))
@@ -85,25 +88,3 @@ def _complain(found: Found) -> None:
         print(f"error: {line}", file=sys.stderr)
     if len(lines) > MOST_LINES:
         print(f"error: and {len(lines) - MOST_LINES} more", file=sys.stderr)
-
-
-class _Progress:
-    """A bar on a terminal; nothing elsewhere."""
-
-    def __init__(self, quiet: bool) -> None:
-        self._shown = not quiet and sys.stderr.isatty()
-        self._began = time.monotonic()
-
-    def __enter__(self) -> _Progress:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        if self._shown:
-            sys.stderr.write("\r\x1b[K")
-            sys.stderr.flush()
-
-    def update(self, done: int, total: int) -> None:
-        if self._shown:
-            text = f"{done} / {total} checks · {duration(time.monotonic() - self._began)}"
-            sys.stderr.write("\r\x1b[K" + bar(text, done / total, shutil.get_terminal_size().columns))
-            sys.stderr.flush()
