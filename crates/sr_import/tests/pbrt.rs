@@ -255,6 +255,20 @@ fn materials() {
 }
 
 #[test]
+fn materials_may_be_described_after_they_are_named() {
+    let s = world(
+        "NamedMaterial \"a\" Shape \"sphere\" Shape \"sphere\"
+         MakeNamedMaterial \"a\" \"string type\" \"diffuse\" \"rgb reflectance\" [ 0.25 0.25 0.25 ]",
+    );
+    assert_eq!(s.shapes[0].material, s.shapes[1].material);
+    assert!(
+        matches!(first_material(&s), MaterialDesc::Diffuse { reflectance } if *reflectance == grey(0.25))
+    );
+    let cycle = "MakeNamedMaterial \"a\" \"string type\" \"mix\" \"string materials\" [ \"a\" \"a\" ] Shape \"sphere\"";
+    assert!(codes(cycle).contains(&"scene::material-cycle"));
+}
+
+#[test]
 fn metals_have_the_color_that_their_spectra_have() {
     let s = world(
         "Material \"conductor\" \"spectrum eta\" \"metal-Au-eta\" \"spectrum k\" \"metal-Au-k\" Shape \"sphere\"",

@@ -115,6 +115,12 @@ impl<'d> Assembly<'d> {
         MaterialId(self.materials.len() as u32 - 1)
     }
 
+    /// Makes a material the same as another one.
+    pub fn copy_material(&mut self, from: MaterialId, to: MaterialId) {
+        self.materials[to.0 as usize] = self.materials[from.0 as usize].clone();
+        self.material_spans[to.0 as usize] = self.material_spans[from.0 as usize].clone();
+    }
+
     /// A shape of the scene itself. With a `mesh`, its geometry is read and placed at the end.
     pub fn add_shape(&mut self, shape: ShapeDesc, mesh: Option<(MeshSource, Placement)>) {
         self.add_pending(mesh, ShapeSlot::Scene(self.shapes.len()), &shape.span);

@@ -26,7 +26,7 @@ mod texture;
 mod transform;
 
 use std::borrow::Cow;
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::PathBuf;
 
 use sr_scene::{Diagnostic, Diagnostics, MaterialId, SceneDesc, Span};
@@ -74,6 +74,8 @@ struct Reader<'d> {
     stack: Vec<Saved>,
     coordinate_systems: HashMap<String, [glam::DMat4; 2]>,
     materials: HashMap<String, MaterialId>,
+    /// Those that were asked for before they are described, and where.
+    awaited: BTreeMap<String, (MaterialId, Span)>,
     /// Shared by all that have none.
     default_material: Option<MaterialId>,
     float_textures: HashMap<String, FloatTexture>,
@@ -102,6 +104,7 @@ impl<'d> Reader<'d> {
             stack: Vec::new(),
             coordinate_systems: HashMap::new(),
             materials: HashMap::new(),
+            awaited: BTreeMap::new(),
             default_material: None,
             float_textures: HashMap::new(),
             color_textures: HashMap::new(),
@@ -154,6 +157,7 @@ impl<'d> Reader<'d> {
                 let message = format!("{open} of AttributeBegin, TransformBegin and ObjectBegin have no end");
                 self.warn("pbrt::unbalanced", span, message, "they end with the file");
             }
+            self.report_awaited();
             self.options_end(span);
         }
         self.out.finish(span)

@@ -46,6 +46,9 @@ impl Reader<'_> {
         };
         let span = params.span.clone();
         let id = self.material(&kind, params);
+        if let Some((place, _)) = self.awaited.remove(name) {
+            self.out.copy_material(id, place);
+        }
         if self.materials.insert(name.to_owned(), id).is_some() {
             let message = format!("the material \"{}\" is described twice", shown(name));
             self.warn("pbrt::duplicate-name", &span, message, "what follows uses the second one");
@@ -57,14 +60,34 @@ impl Reader<'_> {
         self.state.material = Some(self.material_called(name, span));
     }
 
+    /// It may be described later: until then its place is taken.
     fn material_called(&mut self, name: &str, span: &Span) -> MaterialId {
         if let Some(&id) = self.materials.get(name) {
             return id;
         }
-        let message = format!("there is no material \"{}\" before this", shown(name));
-        let mut notes = Notes { list: self.out.d, said: &mut self.said };
-        Self::unresolved(&mut notes, span, message, name, self.materials.keys(), "a diffuse one is used");
-        self.fallback(span)
+        if let Some((id, _)) = self.awaited.get(name) {
+            return *id;
+        }
+        let diffuse = MaterialDesc::Diffuse { reflectance: ColorInput::Constant(GREY) };
+        let id = self.two_sided(diffuse, span);
+        self.awaited.insert(name.to_owned(), (id, span.clone()));
+        id
+    }
+
+    /// Says which materials were never described.
+    pub(super) fn report_awaited(&mut self) {
+        for (name, (_, span)) in std::mem::take(&mut self.awaited) {
+            let message = format!("there is no material \"{}\"", shown(&name));
+            let mut notes = Notes { list: self.out.d, said: &mut self.said };
+            Self::unresolved(
+                &mut notes,
+                &span,
+                message,
+                &name,
+                self.materials.keys(),
+                "a diffuse one is used",
+            );
+        }
     }
 
     /// What shapes have that are given none: diffuse, of reflectance 0.5.
