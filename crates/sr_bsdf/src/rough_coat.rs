@@ -2,7 +2,7 @@
 //!
 //! In: a microfacet distribution and an index. Out: numbers that are the same at every point of the material.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use crate::interface::{dielectric, reflect_about, refract_about};
 use crate::{Microfacet, MicrofacetKind};
@@ -136,14 +136,30 @@ fn node(i: usize) -> f32 {
     (i as f32 / (NODES - 1) as f32).max(1e-6)
 }
 
-/// The mean of `f(wo, m)` over the normals `m` that `wo`, at cos θ = `cos`, sees.
-///
-/// The midpoint rule in t with u = 3t² − 2t³, whose weight 6t(1 − t) vanishes where the normals' tails,
-/// at the edges of the unit square, are singular.
+/// The mean of `f(wo, m)` over the normals `m` that `wo`, at cos θ = `cos`, sees: on a grid of the unit square, see
+/// [`at_tails`].
 pub(crate) fn mean_over_visible_normals(d: &Microfacet, cos: f32, f: impl Fn(Vec3, Vec3) -> f32) -> f32 {
-    let middle = |i: usize| (i as f32 + 0.5) / QUADRATURE as f32;
-    let points = (0..QUADRATURE).flat_map(|i| (0..QUADRATURE).map(move |j| [middle(i), middle(j)]));
-    weighted_mean(d, cos, points, f)
+    let wo = seen_from(cos);
+    let rule: [(f32, f32); QUADRATURE] =
+        std::array::from_fn(|i| at_tails((i as f32 + 0.5) / QUADRATURE as f32));
+    let slope = |u: Vec2| {
+        let m = d.sample_visible(wo, u);
+        m.truncate() / m.z
+    };
+    // Beckmann's slopes along the azimuth of `wo` come from one number, those across from the other.
+    let slopes = (d.kind() == MicrofacetKind::Beckmann)
+        .then(|| rule.map(|(u, _)| [slope(Vec2::new(u, 0.5)).x, slope(Vec2::new(0.5, u)).y]));
+    let normal = |i: usize, j: usize| match &slopes {
+        Some(slopes) => Vec3::new(slopes[i][0], slopes[j][1], 1.0).normalize(),
+        None => d.sample_visible(wo, Vec2::new(rule[i].0, rule[j].0)),
+    };
+    let (mut sum, mut total) = (0.0, 0.0);
+    for (i, j) in (0..QUADRATURE).flat_map(|i| (0..QUADRATURE).map(move |j| (i, j))) {
+        let weight = f64::from(rule[i].1 * rule[j].1);
+        sum += weight * f64::from(f(wo, normal(i, j)));
+        total += weight;
+    }
+    (sum / total) as f32
 }
 
 /// The same where `f` jumps, so that a grid would be a thousandth off and more: at a Fibonacci lattice of 17711 points
@@ -151,25 +167,26 @@ pub(crate) fn mean_over_visible_normals(d: &Microfacet, cos: f32, f: impl Fn(Vec
 pub(crate) fn mean_where_it_jumps(d: &Microfacet, cos: f32, f: impl Fn(Vec3, Vec3) -> f32) -> f32 {
     const POINTS: u32 = 17_711;
     const TURN: u32 = 10_946;
-    let shared = |i: u32| (i as f32 + 0.5) / POINTS as f32;
-    let points = (0..POINTS).map(|i| [shared(i), shared(i * TURN % POINTS)]);
-    weighted_mean(d, cos, points, f)
+    let wo = seen_from(cos);
+    let shared = |i: u32| at_tails((i as f32 + 0.5) / POINTS as f32);
+    let (mut sum, mut total) = (0.0, 0.0);
+    for i in 0..POINTS {
+        let ((u, along), (v, across)) = (shared(i), shared(i * TURN % POINTS));
+        let weight = f64::from(along * across);
+        sum += weight * f64::from(f(wo, d.sample_visible(wo, Vec2::new(u, v))));
+        total += weight;
+    }
+    (sum / total) as f32
 }
 
-/// The mean over normals that come from t in the unit square, evenly spread.
-fn weighted_mean(
-    d: &Microfacet,
-    cos: f32,
-    points: impl Iterator<Item = [f32; 2]>,
-    f: impl Fn(Vec3, Vec3) -> f32,
-) -> f32 {
-    let wo = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
-    let (sum, total) = points.fold((0.0, 0.0), |(sum, total), t| {
-        let u = t.map(|t| t * t * (3.0 - 2.0 * t));
-        let weight = f64::from(t.map(|t| t * (1.0 - t)).iter().product::<f32>());
-        (sum + weight * f64::from(f(wo, d.sample_visible(wo, u.into()))), total + weight)
-    });
-    (sum / total) as f32
+fn seen_from(cos: f32) -> Vec3 {
+    Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos)
+}
+
+/// A uniform number from an evenly spread one, and its weight: u = 3t² − 2t³, whose weight, in proportion to t (1 − t),
+/// vanishes where the normals' tails, at the edges of the unit square, are singular.
+fn at_tails(t: f32) -> (f32, f32) {
+    (t * t * (3.0 - 2.0 * t), t * (1.0 - t))
 }
 
 #[cfg(test)]
@@ -185,6 +202,17 @@ mod tests {
                 let smooth = dielectric(cos, 1.5).transmittance;
                 assert!((tables.transmittance(cos) - smooth).abs() < 1e-3, "{kind:?} {cos}");
             }
+        }
+    }
+
+    /// The mean over the grid of Beckmann's slopes, each drawn once, is that over its normals.
+    #[test]
+    fn slopes_of_a_grid_are_independent() {
+        let d = Microfacet::isotropic(MicrofacetKind::Beckmann, 0.4);
+        let f = |wo: Vec3, m: Vec3| wo.dot(m) + m.x * m.y * m.y;
+        for cos in [1e-6, 0.1, 0.7, 1.0] {
+            let (grid, lattice) = (mean_over_visible_normals(&d, cos, f), mean_where_it_jumps(&d, cos, f));
+            assert!((grid - lattice).abs() < 3e-4, "{cos}: {grid}, not {lattice}");
         }
     }
 
