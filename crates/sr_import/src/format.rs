@@ -11,6 +11,8 @@ pub enum Format {
     Mitsuba,
     /// pbrt-v4's.
     Pbrt,
+    /// glTF 2.0, text or binary.
+    Gltf,
 }
 
 impl Format {
@@ -31,11 +33,12 @@ impl Format {
         })
     }
 
-    /// The text of a file of this format; the error is half a sentence.
-    pub fn read(self, path: &Path) -> Result<String, String> {
+    /// The content of a file of this format, unpacked, as UTF-8 where it is text; the error is half a sentence.
+    pub fn read(self, path: &Path) -> Result<Vec<u8>, String> {
         match self {
-            Self::Mitsuba => files::read_text(path),
-            Self::Pbrt => pbrt::read_text(path),
+            Self::Mitsuba => files::read_text(path).map(String::into_bytes),
+            Self::Pbrt => pbrt::read_text(path).map(String::into_bytes),
+            Self::Gltf => files::read(path, files::MAX_FILE_BYTES),
         }
     }
 
@@ -45,6 +48,7 @@ impl Format {
         match Path::new(name).extension()?.to_str()? {
             "xml" => Some(Self::Mitsuba),
             "pbrt" => Some(Self::Pbrt),
+            "gltf" | "glb" => Some(Self::Gltf),
             _ => None,
         }
     }

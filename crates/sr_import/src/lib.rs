@@ -1,9 +1,9 @@
 //! Scene files of other renderers to scene descriptions.
 //!
-//! In: Mitsuba XML (0.5, 0.6, 2.x and 3.x), pbrt-v4 files, or a tree of [`Node`]s that Python made of a dict. Out: a
+//! In: Mitsuba XML (0.5, 0.6, 2.x and 3.x), pbrt-v4 files, glTF 2.0 (.gltf and .glb), or a tree of [`Node`]s that Python made of a dict. Out: a
 //! [`SceneDesc`] and [`Diagnostics`]. The description is there exactly if no diagnostic is an error.
 //!
-//! - `mitsuba`, `pbrt`: one folder for each format: text to the calls of an `Assembly`. `format`: which one it is.
+//! - `mitsuba`, `pbrt`, `gltf`: one folder for each format: text to the calls of an `Assembly`. `format`: which one it is.
 //! - `assembly`: what all formats share: a description as it grows.
 //! - `mesh`, `images`, `jpeg`, `ies`: the files that scenes name, read in parallel, each once.
 //!
@@ -14,6 +14,7 @@ mod assembly;
 mod color_space;
 mod files;
 mod format;
+mod gltf;
 mod ies;
 mod images;
 mod jpeg;
@@ -49,9 +50,9 @@ pub fn load(path: &Path, options: &LoadOptions) -> (Option<SceneDesc>, Diagnosti
     let mut diagnostics = Diagnostics::default();
     let name = path.display().to_string();
     match format::Format::of_name(&name).read(path) {
-        Ok(text) => {
+        Ok(content) => {
             let directory = path.parent().unwrap_or(Path::new("")).to_owned();
-            let scene = load_text(&name, text.into(), directory, options, &mut diagnostics);
+            let scene = load_content(&name, content.into(), directory, options, &mut diagnostics);
             (scene, diagnostics)
         }
         Err(reason) => {
@@ -71,7 +72,7 @@ pub fn load_str(
     options: &LoadOptions,
 ) -> (Option<SceneDesc>, Diagnostics) {
     let mut diagnostics = Diagnostics::default();
-    let scene = load_text(name, text.into(), directory.to_owned(), options, &mut diagnostics);
+    let scene = load_content(name, text.as_bytes().into(), directory.to_owned(), options, &mut diagnostics);
     (scene, diagnostics)
 }
 
@@ -80,16 +81,32 @@ pub fn from_node(root: &Node, origin: &Origin, diagnostics: &mut Diagnostics) ->
     mitsuba::lower(root, origin, diagnostics)
 }
 
-fn load_text(
+/// The extensions of glTF, and what becomes of each: "done", "approximated: …" or "reported: …".
+pub fn gltf_extensions() -> Vec<(&'static str, String)> {
+    gltf::extensions::EXTENSIONS.iter().map(|(name, support)| (*name, support.to_string())).collect()
+}
+
+fn load_content(
     name: &str,
-    text: Cow<'_, str>,
+    content: Cow<'_, [u8]>,
     directory: PathBuf,
     options: &LoadOptions,
     diagnostics: &mut Diagnostics,
 ) -> Option<SceneDesc> {
     let directories = std::iter::once(directory).chain(options.search_paths.iter().cloned()).collect();
+    if format::Format::of_name(name) == format::Format::Gltf {
+        return gltf::load(name, content.into_owned(), directories, diagnostics);
+    }
+    // Text that is UTF-8 already is not copied.
+    let text = match content {
+        Cow::Borrowed(bytes) => String::from_utf8_lossy(bytes),
+        Cow::Owned(bytes) => String::from_utf8(bytes)
+            .unwrap_or_else(|e| String::from_utf8_lossy(e.as_bytes()).into_owned())
+            .into(),
+    };
     match format::Format::of_text(name, &text) {
         format::Format::Mitsuba => mitsuba::load(name, &text, directories, &options.defines, diagnostics),
         format::Format::Pbrt => pbrt::load(name, text, directories, diagnostics),
+        format::Format::Gltf => gltf::load(name, text.into_owned().into_bytes(), directories, diagnostics),
     }
 }

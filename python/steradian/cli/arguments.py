@@ -216,7 +216,7 @@ def _probability(text: str) -> float:
 
 
 def _add_scene(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("scene", metavar="SCENE", help="a Mitsuba XML or a pbrt-v4 file")
+    parser.add_argument("scene", metavar="SCENE", help="a Mitsuba XML, a pbrt-v4 or a glTF 2.0 file")
     parser.add_argument(
         "--define",
         "-D",

@@ -12,7 +12,15 @@ pub fn default_film() -> FilmDesc {
     FilmDesc { width: 768, height: 576, crop: None, filter, sample_border: false }
 }
 
+/// In front, where +Z is the front and +Y is up, a little to the right and above.
+pub const FRONT_ABOVE: DVec3 = DVec3::new(0.35, 0.4, 1.0);
+
 impl Assembly<'_> {
+    /// The direction of the default camera, in words.
+    pub(super) fn view(&self) -> &'static str {
+        if self.view_from == DVec3::Z { "along -Z" } else { "from the front, slightly above," }
+    }
+
     /// A camera in front of the scene, far enough back to see all of it.
     pub(super) fn default_camera(&self, span: &Span) -> CameraDesc {
         let fov = 45f64.to_radians();
@@ -28,8 +36,9 @@ impl Assembly<'_> {
         }
         let (center, radius) = bounds.sphere();
         let distance = radius / (0.5 * fov).sin();
-        let world_from_camera =
-            look_at(center + DVec3::Z * distance, center, DVec3::Y).unwrap_or(DMat4::IDENTITY).as_mat4();
+        let world_from_camera = look_at(center + self.view_from.normalize() * distance, center, DVec3::Y)
+            .unwrap_or(DMat4::IDENTITY)
+            .as_mat4();
         CameraDesc {
             world_from_camera,
             projection: Projection::Perspective {

@@ -4,16 +4,18 @@
 //! [`SceneDesc`], if nothing was an error. Files are read at the end, in parallel, each once.
 //!
 //! - `images`, `meshes`: what is read at the end.
-//! - `camera`: what a scene without a camera is seen by.
+//! - `camera`, `light`: what a scene without a camera is seen by, and one without lights is lit by.
 
 mod camera;
 mod images;
+mod light;
 mod meshes;
 
 use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use glam::DVec3;
 use sr_scene::{
     CameraDesc, ColorInput, Diagnostic, Diagnostics, GroupDesc, Image, InstanceDesc, LightDesc, MaterialDesc,
     MaterialId, SceneDesc, Settings, ShapeDesc, Span, TextureDesc, TextureId,
@@ -23,7 +25,7 @@ use crate::files;
 use crate::images::Decode;
 use crate::mesh::Placement;
 
-pub use camera::default_film;
+pub use camera::{FRONT_ABOVE, default_film};
 use images::ImageSlot;
 pub use meshes::MeshSource;
 use meshes::{PendingMesh, ShapeSlot};
@@ -36,6 +38,8 @@ pub struct Assembly<'d> {
     pub directories: Vec<PathBuf>,
     /// Where the image is taken from.
     pub camera: Option<CameraDesc>,
+    /// Where from a scene without a camera is seen, from its middle.
+    pub view_from: DVec3,
     /// What the file asks the renderer for.
     pub settings: Settings,
     /// Groups of shapes; meshes are added by [`Assembly::add_shape_to_group`].
@@ -60,6 +64,7 @@ impl<'d> Assembly<'d> {
             d,
             directories,
             camera: None,
+            view_from: DVec3::Z,
             settings: Settings::default(),
             groups: Vec::new(),
             instances: Vec::new(),
@@ -153,7 +158,7 @@ impl<'d> Assembly<'d> {
             None => {
                 self.d.push(
                     Diagnostic::warning("scene::no-camera", span, "the scene has no camera")
-                        .consequence("a camera that sees the whole scene along -Z is used"),
+                        .consequence(format!("a camera that sees the whole scene {} is used", self.view())),
                 );
                 self.default_camera(span)
             }

@@ -37,20 +37,24 @@ pub enum Decode {
 
 /// Reads a file; the error is half a sentence.
 pub fn load(path: &Path, decode: Decode) -> Result<Image, String> {
-    let bytes = files::read(path, files::MAX_FILE_BYTES)?;
+    decode_bytes(path, &files::read(path, files::MAX_FILE_BYTES)?, decode)
+}
+
+/// Decodes what a file, or a part of one, holds; `path` is what messages call it.
+pub fn decode_bytes(path: &Path, bytes: &[u8], decode: Decode) -> Result<Image, String> {
     let linear = |pixels| match decode {
         Decode::Texels(map) => map.apply(pixels, false),
         _ => pixels,
     };
     let (width, height, pixels) = if bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
-        let (width, height, pixels) = open_exr(&bytes)?;
+        let (width, height, pixels) = open_exr(bytes)?;
         (width, height, linear(pixels))
-    } else if pfm::is_pfm(&bytes) {
-        let (width, height, pixels) = pfm::decode(&bytes, MAX_TEXELS)?;
+    } else if pfm::is_pfm(bytes) {
+        let (width, height, pixels) = pfm::decode(bytes, MAX_TEXELS)?;
         (width, height, linear(all_finite(pixels)))
     } else {
         let image =
-            if jpeg::is_jpeg(&bytes) { jpeg::decode(&bytes, MAX_TEXELS)? } else { open_other(path, &bytes)? };
+            if jpeg::is_jpeg(bytes) { jpeg::decode(bytes, MAX_TEXELS)? } else { open_other(path, bytes)? };
         (image.width(), image.height(), convert(image, decode))
     };
     Ok(Image { name: path.display().to_string(), width, height, pixels })

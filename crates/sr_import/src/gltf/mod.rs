@@ -1,0 +1,65 @@
+//! glTF 2.0: `.gltf` and `.glb`.
+//!
+//! - `json`, `container`: a file to values with places, and bytes. Decide no meaning.
+//! - `document`: indices followed, values of the wrong kind said, buffers read once.
+//! - `accessor`: numbers out of buffers. `geometry`: a primitive's triangles; `morph`, `skin`: as they stand at time 0.
+//! - `image`, `texture`, `material`: what surfaces look like. `camera`, `light`, `node`: where everything stands.
+//! - `extensions`: which of them are done, and what is said about the others.
+
+mod accessor;
+mod camera;
+mod container;
+mod document;
+pub mod extensions;
+mod geometry;
+mod image;
+mod json;
+mod light;
+mod material;
+mod morph;
+mod node;
+mod skin;
+mod specular_glossiness;
+mod texture;
+
+use std::path::PathBuf;
+
+use sr_scene::{Diagnostic, Diagnostics, SceneDesc, Span};
+
+use crate::assembly::Assembly;
+use document::Document;
+
+/// Loads a scene from the bytes of a file. `name` is what messages call it.
+pub fn load(name: &str, bytes: Vec<u8>, directories: Vec<PathBuf>, d: &mut Diagnostics) -> Option<SceneDesc> {
+    let container = match container::read(bytes) {
+        Ok(container) => container,
+        Err(reason) => {
+            let source = d.sources.add(name, "");
+            let message = format!("cannot read the scene {name}: {reason}");
+            d.push(Diagnostic::error("scene::cannot-read", &Span { source, bytes: 0..0 }, message));
+            return None;
+        }
+    };
+    let source = d.sources.add(name, container.json.as_str());
+    let root = match json::parse(&container.json, source) {
+        Ok(root) => root,
+        Err((at, reason)) => {
+            let span = Span { source, bytes: at..(at + 1).min(container.json.len()) };
+            d.push(Diagnostic::error("gltf::syntax", &span, format!("this is no JSON: {reason}")));
+            return None;
+        }
+    };
+    drop(container.json);
+    let span = Span { source, bytes: 0..0 };
+    let mut document = Document::new(&root, container.binary, Assembly::new(directories, d));
+    extensions::report(&root, document.out.d);
+    document.scene();
+    if let (0, Some(packed)) = (document.shapes, document.packed.clone()) {
+        let message = "all meshes are packed by KHR_draco_mesh_compression; save the file without it \
+                       (`gltf-transform copy` unpacks it)";
+        document.error("gltf::compressed", &packed, message);
+    }
+    document.out.view_from = crate::assembly::FRONT_ABOVE;
+    document.out.light_if_dark(&span);
+    document.out.finish(&span)
+}
