@@ -3,7 +3,7 @@
 use glam::{Mat3, Vec3};
 use std::sync::Arc;
 
-use sr_scene::{Diagnostic, Image, LightDesc, Pixels, Span, SphereMapping};
+use sr_scene::{Diagnostic, Image, LightDesc, Pixels, ShapeDesc, Span, SphereMapping};
 
 use super::Assembly;
 
@@ -25,9 +25,10 @@ fn radiance(direction: Vec3) -> Vec3 {
 }
 
 impl Assembly<'_> {
-    /// Adds a soft sky if nothing else shines, and says so. +Y is up.
-    pub fn light_if_dark(&mut self, span: &Span) {
-        if !self.lights.is_empty() || self.shapes.iter().any(|shape| shape.emission.is_some()) {
+    /// Adds a soft sky if there is no light, and says so. +Y is up. `emitters`: are the shapes that shine meant as lights?
+    pub fn light_if_dark(&mut self, emitters: bool, span: &Span) {
+        let shines = |shape: &ShapeDesc| shape.emission.is_some();
+        if !self.lights.is_empty() || emitters && self.shapes.iter().any(shines) {
             return;
         }
         self.d.push(

@@ -28,6 +28,8 @@ pub struct Document<'v, 'd> {
     pub packed: Option<Span>,
     /// How many primitives are shown, somewhere.
     pub shapes: usize,
+    /// Does a surface emit more than white does, by KHR_materials_emissive_strength?
+    pub strong_emission: bool,
     /// Codes and places of what was said already.
     said: HashSet<(&'static str, usize)>,
 }
@@ -45,6 +47,7 @@ impl<'v, 'd> Document<'v, 'd> {
             meshes: HashMap::new(),
             packed: None,
             shapes: 0,
+            strong_emission: false,
             said: HashSet::new(),
         }
     }

@@ -224,6 +224,7 @@ impl Document<'_, '_> {
         if factor == Rgb::ZERO {
             return None;
         }
+        self.strong_emission |= strength > 1.0;
         if material.get("doubleSided").is_some_and(Value::is_true) {
             let message = "a surface emits from its front alone";
             self.warn("gltf::two-sided-emission", &material.span, message, "its back is dark");

@@ -60,6 +60,8 @@ pub fn load(name: &str, bytes: Vec<u8>, directories: Vec<PathBuf>, d: &mut Diagn
         document.error("gltf::compressed", &packed, message);
     }
     document.out.view_from = crate::assembly::FRONT_ABOVE;
-    document.out.light_if_dark(&span);
+    // Surfaces that glow no brighter than white are labels and lamps' covers, made to be seen under a sky.
+    let strong = document.strong_emission;
+    document.out.light_if_dark(strong, &span);
     document.out.finish(&span)
 }
