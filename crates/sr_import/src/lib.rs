@@ -20,6 +20,7 @@ mod images;
 mod jpeg;
 mod look_at;
 mod mesh;
+mod mesh_file;
 mod mitsuba;
 mod pbrt;
 mod pfm;
@@ -49,6 +50,10 @@ pub struct LoadOptions {
 pub fn load(path: &Path, options: &LoadOptions) -> (Option<SceneDesc>, Diagnostics) {
     let mut diagnostics = Diagnostics::default();
     let name = path.display().to_string();
+    if let Some(format) = mesh_file::format(path) {
+        let scene = mesh_file::load(path, format, &mut diagnostics);
+        return (scene, diagnostics);
+    }
     match format::Format::of_name(&name).read(path) {
         Ok(content) => {
             let directory = path.parent().unwrap_or(Path::new("")).to_owned();
