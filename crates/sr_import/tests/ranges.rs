@@ -78,6 +78,8 @@ fn shapes_are_within_what_can_be_squared() {
         );
         assert_eq!(said(&format!("{SENSOR}{group}{instance}")).is_empty(), fits, "{by}");
     }
+    let long = "<transform name=\"to_world\"><scale x=\"1e16\" y=\"1\" z=\"1\"/></transform>";
+    error(&shape("disk", long), "scene::extent");
     let far = "<transform name=\"to_world\"><translate x=\"1e16\"/></transform>";
     error(&shape("sphere", far), "scene::extent");
     error(&emitter("spot", far), "scene::extent: a light at");
@@ -144,6 +146,7 @@ fn lights_shine_from_somewhere_at_some_time() {
     for (name, value) in [("hour", "25"), ("latitude", "91"), ("longitude", "1e9"), ("timezone", "99")] {
         error(&emitter("sky", &(float(name, value) + NOON)), &format!("mitsuba::bad-value: \"{name}\""));
     }
+    error(&emitter("sun", &(float("sun_aperture", "1e-3") + NOON)), "scene::sun");
     let spot = format!("{}{}", float("cutoff_angle", "20"), float("beam_width", "30"));
     error(&emitter("spot", &spot), "scene::spot: cutoff angle 20°, beam width 30°: 0 ≤");
     error(&emitter("point", "<rgb name=\"intensity\" value=\"3e38\"/>"), "scene::bad-color");

@@ -29,7 +29,10 @@ impl Assembly<'_> {
         let mut out = Vec::with_capacity(loaded.len());
         for (slot, result) in slots.iter().zip(loaded) {
             match (result, slot) {
-                (Ok(image), _) => out.push(image),
+                (Ok(mut image), slot) => {
+                    self.tame(&mut image, slot);
+                    out.push(image);
+                }
                 (Err(reason), ImageSlot::File { path, span, .. }) => {
                     let error = files::error("file::bad-image", span, "image", path, &reason);
                     self.d.push(error);
@@ -41,6 +44,36 @@ impl Assembly<'_> {
             }
         }
         out
+    }
+}
+
+/// The largest number in an image, as in a constant color.
+const BRIGHTEST: f32 = 1e18;
+
+impl Assembly<'_> {
+    /// Takes what no picture can show out of an image, and says so.
+    fn tame(&mut self, image: &mut Arc<Image>, slot: &ImageSlot) {
+        let Pixels::F32 { data, .. } = &image.pixels else { return };
+        // NaN is in no range.
+        let is_wild = |v: &f32| !(-BRIGHTEST..=BRIGHTEST).contains(v);
+        let count = data.iter().filter(|v| is_wild(v)).count();
+        if count == 0 {
+            return;
+        }
+        let span = match slot {
+            ImageSlot::File { span, .. } => span.clone(),
+            ImageSlot::Ready(_) => Span::default(),
+        };
+        let message = format!("{count} values of {} are infinite, not numbers, or beyond 10¹⁸", image.name);
+        self.d.push(
+            Diagnostic::warning("file::bad-texels", &span, message)
+                .consequence("those that are not numbers are 0, the others ±10¹⁸"),
+        );
+        if let Pixels::F32 { data, .. } = &mut Arc::make_mut(image).pixels {
+            for v in data {
+                *v = if v.is_nan() { 0.0 } else { v.clamp(-BRIGHTEST, BRIGHTEST) };
+            }
+        }
     }
 }
 

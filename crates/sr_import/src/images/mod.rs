@@ -51,7 +51,7 @@ pub fn decode_bytes(path: &Path, bytes: &[u8], decode: Decode) -> Result<Image, 
         (width, height, linear(pixels))
     } else if pfm::is_pfm(bytes) {
         let (width, height, pixels) = pfm::decode(bytes, MAX_TEXELS)?;
-        (width, height, linear(all_finite(pixels)))
+        (width, height, linear(pixels))
     } else {
         let image =
             if jpeg::is_jpeg(bytes) { jpeg::decode(bytes, MAX_TEXELS)? } else { open_other(path, bytes)? };
@@ -146,7 +146,6 @@ fn convert(image: DynamicImage, decode: Decode) -> Pixels {
             texel.iter_mut().take(3).for_each(|v| *v = srgb_to_linear(f64::from(*v)) as f32);
         }
     }
-    data.iter_mut().for_each(|v| *v = finite(*v));
     let pixels = Pixels::F32 { channels, data };
     match decode {
         Decode::Texels(map) => map.apply(pixels, !float),
@@ -164,18 +163,6 @@ fn linear_bytes(data: &[u8], channels: u8) -> Vec<f32> {
             },
         )
         .collect()
-}
-
-/// Pixels that are not numbers are black; infinite ones are the largest number of half precision.
-fn finite(value: f32) -> f32 {
-    if value.is_nan() { 0.0 } else { value.clamp(-65504.0, f32::MAX) }
-}
-
-fn all_finite(mut pixels: Pixels) -> Pixels {
-    if let Pixels::F32 { data, .. } = &mut pixels {
-        data.iter_mut().for_each(|v| *v = finite(*v));
-    }
-    pixels
 }
 
 fn exr_not_decoded(error: exr::error::Error) -> String {
@@ -227,7 +214,7 @@ fn open_exr(bytes: &[u8]) -> Result<(u32, u32, Pixels), String> {
         for (slot, value) in
             data.iter_mut().skip(offset).step_by(channels).zip(channel.sample_data.values_as_f32())
         {
-            *slot = finite(value);
+            *slot = value;
         }
     }
     Ok((layer.size.x() as u32, layer.size.y() as u32, Pixels::F32 { channels: channels as u8, data }))

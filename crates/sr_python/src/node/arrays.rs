@@ -35,6 +35,9 @@ pub fn vector_or_transform(value: &Bound<'_, PyAny>) -> PyResult<Result<Value, S
         Some(([3], a)) => Ok(Value::Vector(DVec3::new(a[0], a[1], a[2]))),
         Some(([4, 4], a)) => {
             let rows: [f64; 16] = std::array::from_fn(|i| a[[i / 4, i % 4]]);
+            if rows[12..] != [0.0, 0.0, 0.0, 1.0] {
+                return Ok(Err(format!("the last row of a placement is 0 0 0 1, not {:?}", &rows[12..])));
+            }
             Ok(Value::Transform(DMat4::from_cols_array(&rows).transpose()))
         }
         Some((shape, _)) => {
@@ -85,6 +88,12 @@ pub fn image(value: &Bound<'_, PyAny>) -> PyResult<Result<Value, String>> {
         let array = bytes.as_array();
         let data = array.iter().copied().collect();
         return Ok(sized(array.shape(), |channels| Pixels::U8 { channels, data }));
+    }
+    // Which number is white is known of bytes and of floating point.
+    if let Some(dtype) = value.getattr_opt("dtype")?
+        && dtype.getattr("kind")?.extract::<String>()? != "f"
+    {
+        return Ok(Err(format!("pixels are uint8 or floating point, not {dtype}")));
     }
     let Some(array) = numbers(value) else {
         return Ok(Err(format!("{} is not an array of pixels", shown(value)?)));

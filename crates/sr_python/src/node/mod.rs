@@ -15,7 +15,7 @@ const MAX_DEPTH: usize = 64;
 
 /// The tree of a dictionary; errors are in the diagnostics.
 pub fn from_dict(dict: &Bound<'_, PyDict>) -> PyResult<(Node, Diagnostics)> {
-    let mut reader = Reader { diagnostics: Diagnostics::default() };
+    let mut reader = Reader { diagnostics: Diagnostics::default(), objects: 0 };
     let span = reader.place("scene");
     let kind = reader.kind(dict, &span)?.unwrap_or_else(|| "scene".into());
     if kind != "scene" {
@@ -25,8 +25,12 @@ pub fn from_dict(dict: &Bound<'_, PyDict>) -> PyResult<(Node, Diagnostics)> {
     Ok((node, reader.diagnostics))
 }
 
+/// More objects are refused: what is used in many places is meant to be a "ref", for each use of a dictionary is a copy.
+const MAX_OBJECTS: usize = 1 << 17;
+
 struct Reader {
     diagnostics: Diagnostics,
+    objects: usize,
 }
 
 impl Reader {
@@ -117,6 +121,20 @@ impl Reader {
             }
             return Ok(());
         }
+        self.objects += 1;
+        if self.objects > MAX_OBJECTS {
+            if self.objects == MAX_OBJECTS + 1 {
+                let message = format!(
+                    "more than {MAX_OBJECTS} objects, each use of a dictionary counted: {{\"type\": \"ref\", \"id\": …}} shares one"
+                );
+                self.error(&span, "dict::too-many", message);
+            }
+            return Ok(());
+        }
+        if kind == "scene" {
+            self.error(&span, "dict::nested-scene", "a scene cannot be inside a scene".into());
+            return Ok(());
+        }
         let Some(class) = plugins::class_of(&kind) else {
             self.diagnostics.push(
                 Diagnostic::error("dict::unknown-type", &span, format!("there is no type \"{kind}\""))
@@ -150,7 +168,7 @@ impl Reader {
         if let Ok(path) = value.extract::<std::path::PathBuf>() {
             return Ok(Ok(Value::String(path.to_string_lossy().into_owned())));
         }
-        if parent.class == "texture" && key == "data" {
+        if matches!((parent.class.as_str(), key), ("texture", "data") | ("emitter", "data" | "bitmap")) {
             return arrays::image(value);
         }
         arrays::vector_or_transform(value)

@@ -95,9 +95,15 @@ impl Textures {
         !self.pyramids.is_empty()
     }
 
-    /// A colour input at a point of a surface.
+    /// A colour input at a point of a surface. What is negative in a texture is black.
     #[inline(always)]
     pub fn color(&self, input: ColorInput, at: impl Into<TexturePoint>) -> Rgb {
+        self.value(input, at).max(Rgb::ZERO)
+    }
+
+    /// The same as it is: displacements may be negative.
+    #[inline(always)]
+    fn value(&self, input: ColorInput, at: impl Into<TexturePoint>) -> Rgb {
         match input {
             ColorInput::Constant(color) => color,
             ColorInput::Texture(id) => self.lookup(id, &at.into()),
@@ -144,12 +150,18 @@ impl Textures {
         }
     }
 
-    /// The gradient of a texture's luminance with respect to (u, v), by central differences over a texel.
+    /// The gradient of a texture's luminance with respect to (u, v): that of the bilinear surface between four texels; of
+    /// whatever else, by central differences over a texel.
     pub fn gradient(&self, id: TextureId, at: impl Into<TexturePoint>) -> Vec2 {
         let point = at.into();
         let uv = point.uv;
         let at = |uv: Vec2| luminance(self.lookup(id, &TexturePoint { uv, ..point }));
         match &self.textures[id.0 as usize] {
+            Texture::Bitmap { image, filter: Filter::Bilinear, wrap, srgb, to_uv } => {
+                let image = &self.images[*image as usize];
+                let slope = bilinear_slope(image, (*wrap, *srgb), to_uv.transform_point2(uv));
+                to_uv.matrix2.transpose() * slope
+            }
             Texture::Bitmap { image, to_uv, .. } | Texture::Mipmap { image, to_uv, .. } => {
                 let image = &self.images[*image as usize];
                 let size = Vec2::new(image.width as f32, image.height as f32);
@@ -218,7 +230,7 @@ impl Textures {
             Texture::Checkerboard { colors, to_uv } => {
                 let t = to_uv.transform_point2(at.uv);
                 let is_far = |x: f32| x - to_cell(x) as f32 > 0.5;
-                self.color(colors[usize::from(is_far(t.x) != is_far(t.y))], *at)
+                self.value(colors[usize::from(is_far(t.x) != is_far(t.y))], *at)
             }
             _ => self.lookup_composite(id, at),
         }
@@ -236,10 +248,10 @@ impl Textures {
                 let of = |image: &Image| filtered(image, (Filter::Bilinear, *wrap, *srgb), uv);
                 self.pyramids[*pyramid as usize].lookup(base, at.footprint * texels, of)
             }
-            &Texture::Scale([a, b]) => self.color(a, *at) * self.color(b, *at),
+            &Texture::Scale([a, b]) => self.value(a, *at) * self.value(b, *at),
             &Texture::Mix { colors: [a, b], weight } => {
                 let weight = self.scalar(weight, *at).clamp(0.0, 1.0);
-                self.color(a, *at) * (1.0 - weight) + self.color(b, *at) * weight
+                self.value(a, *at) * (1.0 - weight) + self.value(b, *at) * weight
             }
             &Texture::MeshColor { of, scale } => {
                 scale
@@ -271,6 +283,21 @@ fn filtered(image: &Image, (filter, wrap, srgb): (Filter, Wrap, bool), uv: Vec2)
     }
 }
 
+/// The gradient of the luminance between four texels, with respect to the coordinates of the unit square.
+fn bilinear_slope(image: &Image, (wrap, srgb): (Wrap, bool), uv: Vec2) -> Vec2 {
+    let size = Vec2::new(image.width as f32, image.height as f32);
+    let at = uv * size - 0.5;
+    let (x, y) = (to_cell(at.x), to_cell(at.y));
+    let t = (at - Vec2::new(x as f32, y as f32)).clamp(Vec2::ZERO, Vec2::ONE);
+    let height = |i: i32, j: i32| {
+        let (column, row) = (wrapped(x + i, image.width, wrap), wrapped(y + j, image.height, wrap));
+        luminance(texel(image, srgb, column, row))
+    };
+    let [a, b, c, d] = [height(0, 0), height(1, 0), height(0, 1), height(1, 1)];
+    let mix = |low: f32, high: f32, t: f32| low + t * (high - low);
+    size * Vec2::new(mix(b - a, d - c, t.y), mix(c - a, d - b, t.x))
+}
+
 #[cfg(test)]
 mod tests {
     use super::texel::DECODED;
@@ -287,6 +314,27 @@ mod tests {
 
     fn at(t: &Textures, u: f32, v: f32) -> f32 {
         t.scalar(ScalarInput::Texture(TextureId(0)), Vec2::new(u, v))
+    }
+
+    /// Between four texels the surface is a + b x + c y + d x y; its slope is not that of a whole texel's width.
+    #[test]
+    fn slopes_are_those_of_the_bilinear_surface() {
+        let data = vec![0.0, 1.0, 4.0, 2.0];
+        let image =
+            Image { name: "t".into(), width: 2, height: 2, pixels: Pixels::F32 { channels: 1, data } };
+        let to_uv = Affine2::from_scale(Vec2::new(0.5, 2.0));
+        let (filter, wrap, span) = (Filter::Bilinear, Wrap::Repeat, Span::default());
+        let desc = TextureDesc::Bitmap { image: 0, filter, wrap, srgb: false, to_uv, span };
+        let t = Textures::new(&[desc], &[Arc::new(image)]);
+        for (u, v) in [(0.7, 0.2), (1.3, 0.19), (0.9, 0.3), (0.1, 0.01)] {
+            let step = 1e-3;
+            let slope = |du: f32, dv: f32| {
+                (at(&t, u + du * step, v + dv * step) - at(&t, u - du * step, v - dv * step)) / (2.0 * step)
+            };
+            let expected = Vec2::new(slope(1.0, 0.0), slope(0.0, 1.0));
+            let got = t.gradient(TextureId(0), Vec2::new(u, v));
+            assert!((got - expected).length() < 2e-2, "{u} {v}: {got}, not {expected}");
+        }
     }
 
     #[test]

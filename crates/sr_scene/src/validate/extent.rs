@@ -16,7 +16,7 @@ const SMALLEST: f64 = 1e-15;
 struct Extent {
     /// The largest coordinate, without its sign.
     reach: f64,
-    /// The longest side of the box around it.
+    /// How large it is, up to a factor: the longest side of the box around it, a radius.
     size: f64,
 }
 
@@ -38,11 +38,9 @@ impl Extent {
             Geometry::Mesh(mesh) => Self::of_points(mesh.positions.iter().copied()),
             Geometry::Sphere { center, radius, .. } => around(*center, (*radius).into()),
             Geometry::Disk { center, u_axis, v_axis, .. } => {
-                around(*center, u_axis.as_dvec3().length().min(v_axis.as_dvec3().length()))
+                around(*center, u_axis.as_dvec3().length().max(v_axis.as_dvec3().length()))
             }
-            Geometry::Cylinder { base, radius, length, .. } => {
-                Self { size: radius.min(*length).into(), ..around(*base, (radius + length).into()) }
-            }
+            Geometry::Cylinder { base, radius, length, .. } => around(*base, (radius + length).into()),
             Geometry::Patch { corners, .. } => Self::of_points(*corners),
         }
     }
@@ -55,7 +53,10 @@ impl Extent {
 impl Check<'_> {
     /// How far a shape reaches, which is finite.
     pub(super) fn extent(&mut self, shape: &ShapeDesc) {
-        self.extent_fits(Extent::of(&shape.geometry), "the shape", &shape.span);
+        let extent = Extent::of(&shape.geometry);
+        if extent.size > 0.0 {
+            self.extent_fits(extent, "the shape", &shape.span);
+        }
     }
 
     fn extent_fits(&mut self, Extent { reach, size }: Extent, what: &str, span: &Span) {
@@ -94,7 +95,9 @@ impl Check<'_> {
             let longest = lengths.into_iter().fold(0.0, f64::max);
             let shift = f64::from(m.translation.abs().max_element());
             let placed = Extent { reach: shift + longest * extent.reach, size: longest * extent.size };
-            self.extent_fits(placed, "the instance", span);
+            if extent.size > 0.0 {
+                self.extent_fits(placed, "the instance", span);
+            }
             let shortest = lengths.into_iter().fold(f64::INFINITY, f64::min);
             if longest > FARTHEST || shortest < SMALLEST {
                 let message = format!(

@@ -8,6 +8,9 @@ use super::{BRIGHTEST, Check, degrees, extent};
 use crate::diagnostic::{Diagnostic, Span};
 use crate::{IntensityProfile, LightDesc, MAX_PORTALS, Pixels, Portal, SphereMapping};
 
+/// Of the sun's disk, in radians (0.01°): smaller, single precision does not tell its directions apart.
+const SMALLEST_SUN: f32 = 1.745e-4;
+
 impl Check<'_> {
     pub(super) fn light(&mut self, light: &LightDesc) {
         match light {
@@ -81,10 +84,11 @@ impl Check<'_> {
             LightDesc::Sun { turbidity, direction, scale, aperture, world_from_light, span } => {
                 self.sky(*turbidity, *direction, *scale, span);
                 self.placement(world_from_light.determinant(), "the sun", span);
-                if !(*aperture > 0.0 && *aperture < PI) {
+                if !(SMALLEST_SUN..PI).contains(aperture) {
                     let message = format!(
-                        "the sun fills an angle of {}: above 0° and below 180° is needed",
-                        degrees(*aperture)
+                        "the sun fills an angle of {}: at least {} and less than 180° is possible",
+                        degrees(*aperture),
+                        degrees(SMALLEST_SUN)
                     );
                     self.error("scene::sun", span, message);
                 }
@@ -128,6 +132,12 @@ impl Check<'_> {
         }
         let Pixels::F32 { channels, data } = &image.pixels else { return };
         let is_color = |i: usize| *channels < 4 || i % 4 != 3;
+        if data.iter().enumerate().all(|(i, v)| !is_color(i) || *v == 0.0) {
+            self.found.push(
+                Diagnostic::warning("scene::black-image", span, format!("{} is all black", image.name))
+                    .consequence("so is the light"),
+            );
+        }
         let bad =
             data.iter().enumerate().filter(|&(i, v)| is_color(i) && !(*v >= 0.0 && v.is_finite())).count();
         if bad > 0 {

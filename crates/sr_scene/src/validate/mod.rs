@@ -47,6 +47,7 @@ pub fn validate(scene: &SceneDesc) -> Vec<Diagnostic> {
         check.light(light);
     }
     check.missing_mesh_colors();
+    check.negative_texels();
     check.found
 }
 

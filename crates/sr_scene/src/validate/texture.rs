@@ -1,10 +1,12 @@
 //! Textures: ids, colours, transforms, and how they are nested.
 
+use std::collections::HashSet;
+
 use glam::Affine2;
 
 use super::Check;
-use crate::diagnostic::{Diagnostic, Span};
-use crate::{ColorInput, ScalarInput, TextureDesc, TextureId};
+use crate::diagnostic::{Diagnostic, Severity, Span};
+use crate::{ColorInput, LightDesc, MaterialDesc, Pixels, ScalarInput, TextureDesc, TextureId};
 
 /// Textures that one lookup may lead to.
 const MAX_LOOKUPS: u32 = 256;
@@ -84,6 +86,50 @@ impl Check<'_> {
             self.texture_transform(to_uv, span);
         }
         (span, inner)
+    }
+
+    /// Images with negative values where a color or a number is wanted; displacements may be negative. Of a scene without
+    /// errors.
+    pub(super) fn negative_texels(&mut self) {
+        if self.found.iter().any(|d| d.severity == Severity::Error) {
+            return;
+        }
+        let scene = self.scene;
+        let is_displacement = |m: &&MaterialDesc| matches!(m, MaterialDesc::BumpMap { .. });
+        let of_materials =
+            scene.materials.iter().filter(|m| !is_displacement(m)).flat_map(MaterialDesc::textures);
+        let shapes = scene.shapes.iter().chain(scene.groups.iter().flat_map(|group| &group.shapes));
+        let of_shapes =
+            shapes.filter_map(|shape| shape.emission.and_then(|e| Option::<TextureId>::from(e.radiance)));
+        let of_lights = scene.lights.iter().filter_map(|light| match light {
+            LightDesc::Spot { texture, .. } => *texture,
+            LightDesc::Projector { irradiance, .. } => (*irradiance).into(),
+            _ => None,
+        });
+        let mut open: Vec<TextureId> = of_materials.chain(of_shapes).chain(of_lights).collect();
+        let mut seen = HashSet::new();
+        let mut images = HashSet::new();
+        while let Some(id) = open.pop() {
+            if !seen.insert(id) {
+                continue;
+            }
+            let texture = &scene.textures[id.0 as usize];
+            open.extend(texture.textures());
+            let TextureDesc::Bitmap { image, span, .. } = texture else { continue };
+            let image = &scene.images[*image as usize];
+            let Pixels::F32 { data, .. } = &image.pixels else { continue };
+            if !images.insert(std::sync::Arc::as_ptr(image)) {
+                continue;
+            }
+            let negative = data.iter().filter(|v| **v < 0.0).count();
+            if negative > 0 {
+                let message = format!("{negative} values of {} are negative", image.name);
+                self.found.push(
+                    Diagnostic::warning("scene::bad-texels", span, message)
+                        .consequence("where colors are wanted they are black"),
+                );
+            }
+        }
     }
 
     fn texture_transform(&mut self, to_uv: &Affine2, span: &Span) {

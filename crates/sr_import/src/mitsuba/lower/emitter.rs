@@ -59,9 +59,10 @@ impl<'a> Lowering<'a, '_> {
                 let intensity = self.constant_color(&mut props, "intensity", Rgb::ONE, Role::Emission);
                 let cutoff = props.float("cutoff_angle", self.out.d).unwrap_or(20.0);
                 let beam = props.float("beam_width", self.out.d).unwrap_or(cutoff * 0.75);
-                let texture = match self.color_if_given(&mut props, "texture", Role::Factor) {
-                    Some(ColorInput::Texture(id)) => Some(id),
-                    Some(ColorInput::Constant(_)) | None => None,
+                let (texture, intensity) = match self.color_if_given(&mut props, "texture", Role::Factor) {
+                    Some(ColorInput::Texture(id)) => (Some(id), intensity),
+                    Some(ColorInput::Constant(color)) => (None, intensity * color),
+                    None => (None, intensity),
                 };
                 let (cutoff_angle, beam_width) = (cutoff.to_radians(), beam.to_radians());
                 Some(LightDesc::Spot { world_from_light, intensity, cutoff_angle, beam_width, texture, span })

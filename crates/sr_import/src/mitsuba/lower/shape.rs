@@ -117,7 +117,9 @@ impl<'a> Lowering<'a, '_> {
             "cylinder" => Some(Form::Ready(self.cylinder(node, props))),
             "bilinearpatch" => Some(Form::Ready(self.patch(props))),
             "rectangle" => {
-                let placement = Placement { flat: true, ..self.placement(props) };
+                // Its front stays the front under mirrors: Mitsuba's shading frame, which decides, is that of +Z placed.
+                let placement =
+                    Placement { flat: true, convention: Convention::Flat, ..self.placement(props) };
                 Some(Form::Mesh(MeshSource::Memory(Arc::new(primitives::rectangle())), placement))
             }
             "cube" => {
