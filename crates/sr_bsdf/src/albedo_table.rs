@@ -50,6 +50,7 @@ impl AlbedoTable {
     }
 
     /// At a cosine.
+    #[inline(always)]
     pub fn at(&self, cos: f32) -> f32 {
         let x = cos.clamp(0.0, 1.0).sqrt() * (NODES - 1) as f32;
         let i = (x as usize).min(NODES - 2);
@@ -57,21 +58,25 @@ impl AlbedoTable {
     }
 
     /// Of diffuse light: 2 ∫ E μ dμ.
+    #[inline(always)]
     pub fn mean(&self) -> f32 {
         self.mean
     }
 
     /// What is missing at a cosine.
+    #[inline(always)]
     pub(crate) fn left(&self, cos: f32) -> f32 {
         1.0 - self.at(cos)
     }
 
     /// What is missing of diffuse light.
+    #[inline(always)]
     pub(crate) fn mean_left(&self) -> f32 {
         1.0 - self.mean
     }
 
     /// The lobe that gives back what is missing, for a lossless surface; the sides of `wo` and `wi` may have other tables.
+    #[inline(always)]
     pub(crate) fn lobe(&self, wo: Vec3, of_wi: &Self, wi: Vec3) -> f32 {
         let mean_left = of_wi.mean_left();
         // Where nothing is missing there is nothing to give back.

@@ -62,7 +62,11 @@ impl<'a> Part<'a> {
     /// f.
     #[inline(always)]
     fn f(&self, wo: Vec3, wi: Vec3) -> Rgb {
-        if self.is_in_place() { self.model.eval(wo, wi) } else { self.f_in_frame(&wo, &wi) }
+        if self.is_in_place() {
+            f_by_numbers(&self.model, wo.x, wo.y, wo.z, wi.x, wi.y, wi.z)
+        } else {
+            self.f_in_frame(&wo, &wi)
+        }
     }
 
     /// f, the cosine being that of the inner frame; 0 in the surface itself, where it would be infinite.
@@ -77,7 +81,11 @@ impl<'a> Part<'a> {
 
     #[inline(always)]
     fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        if self.is_in_place() { self.model.pdf(wo, wi) } else { self.pdf_in_frame(&wo, &wi) }
+        if self.is_in_place() {
+            pdf_by_numbers(&self.model, wo.x, wo.y, wo.z, wi.x, wi.y, wi.z)
+        } else {
+            self.pdf_in_frame(&wo, &wi)
+        }
     }
 
     #[inline(never)]
@@ -145,7 +153,18 @@ impl<'a> Blend<'a> {
     }
 }
 
-/// Loops, and models inlined in them: directions that are handed on through memory cost more than a model does.
+/// f of any model. Six numbers come in registers; two directions, through memory, would cost more than a model does.
+#[inline(never)]
+fn f_by_numbers(model: &AnyModel, ox: f32, oy: f32, oz: f32, ix: f32, iy: f32, iz: f32) -> Rgb {
+    model.eval(Vec3::new(ox, oy, oz), Vec3::new(ix, iy, iz))
+}
+
+/// Its density, in the same way.
+#[inline(never)]
+fn pdf_by_numbers(model: &AnyModel, ox: f32, oy: f32, oz: f32, ix: f32, iy: f32, iz: f32) -> f32 {
+    model.pdf(Vec3::new(ox, oy, oz), Vec3::new(ix, iy, iz))
+}
+
 impl Bsdf for Blend<'_> {
     #[inline(always)]
     fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {

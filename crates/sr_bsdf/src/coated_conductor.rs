@@ -53,12 +53,14 @@ impl CoatedConductorTables {
 }
 
 /// A direction outside, bent as it enters a coat, pointing away from the base.
+#[inline(always)]
 fn enter(w: Vec3, eta: f32) -> Vec3 {
     let z = (1.0 - (1.0 - w.z * w.z).max(0.0) / (eta * eta)).max(0.0).sqrt();
     Vec3::new(w.x / eta, w.y / eta, z).normalize_or(Vec3::Z)
 }
 
 /// The inverse of [`enter`]; `None` where reflection is total.
+#[inline(always)]
 fn leave(w: Vec3, eta: f32) -> Option<Vec3> {
     let z2 = 1.0 - (1.0 - w.z * w.z).max(0.0) * (eta * eta);
     (z2 > 0.0).then(|| Vec3::new(w.x * eta, w.y * eta, z2.sqrt()).normalize())
@@ -94,6 +96,7 @@ impl<'a> CoatedConductor<'a> {
     }
 
     /// Probabilities of coat, metal and wide lobe.
+    #[inline(always)]
     fn choice(&self, cos: f32) -> [f32; 3] {
         let t = self.tables;
         let coat = t.reflected.at(cos);
@@ -104,6 +107,7 @@ impl<'a> CoatedConductor<'a> {
     }
 
     /// f and the density of all that is not a delta.
+    #[inline(always)]
     fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
         if wo.z <= 0.0 || wi.z <= 0.0 {
             return (Rgb::ZERO, 0.0);
@@ -126,6 +130,7 @@ impl<'a> CoatedConductor<'a> {
 }
 
 impl Bsdf for CoatedConductor<'_> {
+    #[inline(always)]
     fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
         self.eval_pdf(wo, wi).0
     }
@@ -157,6 +162,7 @@ impl Bsdf for CoatedConductor<'_> {
         })
     }
 
+    #[inline(always)]
     fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
         self.eval_pdf(wo, wi).1
     }

@@ -37,12 +37,14 @@ impl<'a> CompensatedConductor<'a> {
     }
 
     /// Probability of the wide lobe.
+    #[inline(always)]
     fn p_wide(&self, wo: Vec3) -> f32 {
         self.table.left(wo.z).clamp(0.0, 1.0)
     }
 }
 
 impl Bsdf for CompensatedConductor<'_> {
+    #[inline(always)]
     fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
         if wo.z <= 0.0 || wi.z <= 0.0 {
             return Rgb::ZERO;
@@ -67,6 +69,7 @@ impl Bsdf for CompensatedConductor<'_> {
         (pdf > 0.0 && pdf.is_finite()).then_some(BsdfSample { wi, weight, pdf, delta: false, eta: 1.0 })
     }
 
+    #[inline(always)]
     fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
         if wo.z <= 0.0 || wi.z <= 0.0 {
             return 0.0;

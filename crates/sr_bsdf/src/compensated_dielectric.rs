@@ -82,6 +82,7 @@ impl<'a> CompensatedDielectric<'a> {
         Self { single, tables, reflectance, transmittance }
     }
 
+    #[inline(always)]
     fn side(&self, wo: Vec3) -> Side<'a> {
         let DielectricTables { sides: [outside, inside], crossing, eta, .. } = self.tables;
         if wo.z > 0.0 {
@@ -92,6 +93,7 @@ impl<'a> CompensatedDielectric<'a> {
     }
 
     /// The wide lobes: f and the density, given that they are sampled.
+    #[inline(always)]
     fn wide(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
         let side = self.side(wo);
         let cosine = CosineHemisphere.pdf(wi.with_z(wi.z.abs()));
@@ -105,12 +107,14 @@ impl<'a> CompensatedDielectric<'a> {
     }
 
     /// Probability of the wide lobes.
+    #[inline(always)]
     fn p_wide(&self, wo: Vec3) -> f32 {
         self.side(wo).near.left(wo.z.abs())
     }
 }
 
 impl Bsdf for CompensatedDielectric<'_> {
+    #[inline(always)]
     fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
         if wo.z == 0.0 || wi.z == 0.0 {
             return Rgb::ZERO;
@@ -142,6 +146,7 @@ impl Bsdf for CompensatedDielectric<'_> {
         (pdf > 0.0 && pdf.is_finite()).then(|| BsdfSample { weight: f_cos / pdf, pdf, ..s })
     }
 
+    #[inline(always)]
     fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
         if wo.z == 0.0 || wi.z == 0.0 {
             return 0.0;

@@ -18,24 +18,28 @@ pub(crate) fn distribution(roughness: f32, anisotropic: f32) -> Microfacet<Ggx> 
 }
 
 /// (1 − cos θ)⁵, Schlick's weight.
+#[inline(always)]
 pub(crate) fn schlick_weight(cos: f32) -> f32 {
     let m = (1.0 - cos).clamp(0.0, 1.0);
     (m * m) * (m * m) * m
 }
 
 /// Schlick's approximation of Fresnel's equations, from the side where the index is 1; with η < 1 at the refracted angle.
+#[inline(always)]
 pub(crate) fn schlick(r0: Rgb, cos: f32, eta: f32) -> Rgb {
     let cos = if eta > 1.0 { cos } else { (1.0 - (1.0 - cos * cos) / (eta * eta)).max(0.0).sqrt() };
     r0.lerp(Rgb::ONE, schlick_weight(cos))
 }
 
 /// A colour of luminance 1 with the hue of another; white for black.
+#[inline(always)]
 pub(crate) fn tint(color: Rgb) -> Rgb {
     let luminance = color.dot(LUMINANCE);
     if luminance > 0.0 { color / luminance } else { Rgb::ONE }
 }
 
 /// The reflectance of a dielectric at normal incidence.
+#[inline(always)]
 pub(crate) fn r0(eta: f32) -> f32 {
     ((eta - 1.0) / (eta + 1.0)).powi(2)
 }
@@ -57,6 +61,7 @@ impl Base {
     }
 
     /// f without sheen, and the sheen; at cosines of `wo` and `wi` with the normal, and of either with the half vector.
+    #[inline(always)]
     pub fn eval(&self, cos_o: f32, cos_i: f32, cos_d: f32) -> (Rgb, Rgb) {
         let (o, i) = (schlick_weight(cos_o), schlick_weight(cos_i));
         let diffuse = (1.0 - 0.5 * i) * (1.0 - 0.5 * o);
@@ -82,6 +87,7 @@ impl ClearcoatNormals {
         Self { alpha2: alpha * alpha }
     }
 
+    #[inline(always)]
     pub fn d(&self, m: Vec3) -> f32 {
         if m.z <= 0.0 {
             return 0.0;
@@ -91,6 +97,7 @@ impl ClearcoatNormals {
     }
 
     /// The density of normals, D cos θ, in sr⁻¹.
+    #[inline(always)]
     pub fn pdf(&self, m: Vec3) -> f32 {
         m.z.max(0.0) * self.d(m)
     }
@@ -103,6 +110,7 @@ impl ClearcoatNormals {
     }
 
     /// Smith's G₁ of GGX with α = 0.25, whatever the gloss.
+    #[inline(always)]
     pub fn g1(cos: f32) -> f32 {
         2.0 * cos / (cos + (cos * cos + 0.0625 * (1.0 - cos * cos).max(0.0)).sqrt())
     }

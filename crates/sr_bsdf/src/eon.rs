@@ -30,11 +30,13 @@ impl Eon {
         Self { albedo: albedo.clamp(Rgb::ZERO, Rgb::ONE), roughness: roughness.clamp(0.0, 1.0) }
     }
 
+    #[inline(always)]
     fn a(&self) -> f32 {
         1.0 / (1.0 + C1 * self.roughness)
     }
 
     /// The fraction that one bounce returns of light at an angle, for ρ = 1 (eq. 20, without its poles).
+    #[inline(always)]
     fn single_albedo(&self, mu: f32) -> f32 {
         let si = (1.0 - mu * mu).max(0.0).sqrt();
         // (1 − s³) / μ = μ (1 + s + s²) / (1 + s), as 1 − s² = μ².
@@ -44,18 +46,21 @@ impl Eon {
     }
 
     /// All that the surface reflects of light at an angle.
+    #[inline(always)]
     fn albedo_at(&self, mu: f32) -> Rgb {
         let single = self.single_albedo(mu);
         self.albedo * single + self.many_bounces() * (1.0 - single)
     }
 
     /// How much comes back of light that has bounced once without leaving.
+    #[inline(always)]
     fn many_bounces(&self) -> Rgb {
         let mean = self.a() * (1.0 + C2 * self.roughness);
         self.albedo * self.albedo * mean / (Rgb::ONE - self.albedo * (1.0 - mean))
     }
 
     /// The probability of a uniform direction (listing 3).
+    #[inline(always)]
     fn p_uniform(&self, mu: f32) -> f32 {
         self.roughness.powf(0.1) * (0.162_925 + mu * (-0.372_058 + (0.538_233 - 0.290_822 * mu) * mu))
     }
@@ -83,6 +88,7 @@ impl ClippedCosine {
         Self { a, b, c, d, s: 0.5 * (1.0 + 1.0 / (d * d + 1.0).sqrt()) }
     }
 
+    #[inline(always)]
     fn determinant(&self) -> f32 {
         self.c * (self.a - self.b * self.d)
     }
@@ -96,6 +102,7 @@ impl ClippedCosine {
         Vec3::new(self.a * x + self.b * z, self.c * y, self.d * x + z).normalize_or_zero()
     }
 
+    #[inline(always)]
     fn pdf(&self, w: Vec3) -> f32 {
         let Self { a, b, c, d, s } = self;
         // Up to the determinant, the inverse of the transformation.
@@ -107,11 +114,13 @@ impl ClippedCosine {
 }
 
 /// The azimuth of `wo` as the x axis.
+#[inline(always)]
 fn azimuth(wo: Vec3) -> Vec2 {
     wo.truncate().try_normalize().unwrap_or(Vec2::X)
 }
 
 impl Bsdf for Eon {
+    #[inline(always)]
     fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
         if wo.z <= 0.0 || wi.z <= 0.0 {
             return Rgb::ZERO;
@@ -145,6 +154,7 @@ impl Bsdf for Eon {
         })
     }
 
+    #[inline(always)]
     fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
         if wo.z <= 0.0 || wi.z <= 0.0 {
             return 0.0;

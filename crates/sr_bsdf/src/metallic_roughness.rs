@@ -130,6 +130,7 @@ impl Sheen {
     }
 
     /// What is left for the layers below, of light that comes and goes at these cosines.
+    #[inline(always)]
     fn passes(&self, cos_o: f32, cos_i: f32) -> f32 {
         let most = self.color.max_element();
         if most <= 0.0 {
@@ -182,34 +183,41 @@ impl MetallicRoughness {
     }
 
     /// The dielectric's Fresnel factor at the cosine on the side of the lower index.
+    #[inline(always)]
     fn dielectric_fresnel(&self, cos: f32) -> Rgb {
         self.f0.lerp(Rgb::splat(self.i.specular), schlick_weight(cos))
     }
 
+    #[inline(always)]
     fn gloss_fresnel(&self, cos: f32) -> Rgb {
         let metal = self.i.base_color.lerp(Rgb::ONE, schlick_weight(cos));
         self.dielectric_fresnel(cos).lerp(metal, self.i.metallic)
     }
 
+    #[inline(always)]
     fn coat_fresnel(&self, cos: f32) -> f32 {
         self.i.clearcoat * (0.04 + 0.96 * schlick_weight(cos))
     }
 
     /// What coat and sheen leave to what is below.
+    #[inline(always)]
     fn passes(&self, cos_o: f32, cos_i: f32) -> f32 {
         let coat = (1.0 - self.coat_fresnel(cos_o)) * (1.0 - self.coat_fresnel(cos_i));
         coat * self.sheen.passes(cos_o, cos_i)
     }
 
     /// Weight of what the dielectric transmits, before its Fresnel factor.
+    #[inline(always)]
     fn transmits(&self) -> f32 {
         (1.0 - self.i.metallic) * self.i.transmission
     }
 
+    #[inline(always)]
     fn diffuses(&self) -> f32 {
         (1.0 - self.i.metallic) * (1.0 - self.i.transmission)
     }
 
+    #[inline(always)]
     fn choice(&self, cos: f32) -> Choice {
         let coat = self.coat_fresnel(cos);
         let gloss = self.gloss_fresnel(cos).max_element();
@@ -221,6 +229,7 @@ impl MetallicRoughness {
     }
 
     /// In the frame of the highlights, `wo` above; `None` if nothing is seen from there.
+    #[inline(always)]
     fn seen(&self, wo: Vec3) -> Option<(Vec3, bool)> {
         let is_front = wo.z > 0.0;
         let up = if is_front { wo } else { flip(wo) };
@@ -229,17 +238,20 @@ impl MetallicRoughness {
     }
 
     /// Into the frame of the highlights, or back.
+    #[inline(always)]
     fn local(&self, w: Vec3, is_front: bool) -> Vec3 {
         let w = if is_front { w } else { flip(w) };
         self.turn.rotate(w.truncate()).extend(w.z)
     }
 
+    #[inline(always)]
     fn back(&self, w: Vec3, is_front: bool) -> Vec3 {
         let w = (self.turn * Vec2::new(1.0, -1.0)).rotate(w.truncate()).extend(w.z);
         if is_front { w } else { flip(w) }
     }
 
     /// From behind, where light is bent.
+    #[inline(always)]
     fn eval_pdf_inside(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
         let eta = 1.0 / self.i.ior;
         if wi.z > 0.0 {
@@ -254,12 +266,14 @@ impl MetallicRoughness {
         self.refracted(wo, wi, eta, facet.m, 1.0 - f, 1.0 - f)
     }
 
+    #[inline(always)]
     fn inside_fresnel(&self, cos: f32) -> Rgb {
         let split = dielectric(cos, 1.0 / self.i.ior);
         if split.transmittance <= 0.0 { Rgb::ONE } else { self.dielectric_fresnel(split.cos_t) }
     }
 
     /// f and the density where facets with normal `m` refract between two directions.
+    #[inline(always)]
     fn refracted(&self, wo: Vec3, wi: Vec3, eta: f32, m: Vec3, transmits: f32, p: f32) -> (Rgb, f32) {
         let cos_i = -wi.dot(m);
         let length2 = (wo.dot(m) - eta * cos_i).powi(2);
@@ -270,6 +284,7 @@ impl MetallicRoughness {
         (self.i.base_color * (scale * self.gloss.d(m) / area), pdf)
     }
 
+    #[inline(always)]
     fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
         let nothing = (Rgb::ZERO, 0.0);
         let Some((wo, is_front)) = self.seen(wo) else { return nothing };
@@ -313,6 +328,7 @@ impl MetallicRoughness {
     }
 
     /// A direction in the frame of the highlights, and the index there over that of `wo`.
+    #[inline(always)]
     fn draw(&self, wo: Vec3, is_front: bool, u_lobe: f32, u: Vec2) -> Option<(Vec3, f32)> {
         if !is_front && !self.i.is_thin {
             let m = self.gloss.sample_visible(wo, u);
@@ -345,10 +361,12 @@ impl MetallicRoughness {
 }
 
 impl Bsdf for MetallicRoughness {
+    #[inline(always)]
     fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
         self.eval_pdf(wo, wi).0
     }
 
+    #[inline(always)]
     fn sample(&self, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
         let (up, is_front) = self.seen(wo)?;
         let (wi, eta) = self.draw(up, is_front, u_lobe, u)?;
@@ -364,6 +382,7 @@ impl Bsdf for MetallicRoughness {
         })
     }
 
+    #[inline(always)]
     fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
         self.eval_pdf(wo, wi).1
     }

@@ -43,6 +43,12 @@ impl Facet {
         Self { normal: m, length_squared: 1.0 }
     }
 
+    /// Is `w` on the side of the normal?
+    #[inline(always)]
+    pub fn is_seen_from(&self, w: Vec3) -> bool {
+        self.normal.dot(w) >= 0.0
+    }
+
     /// The cosine between the normal and either of the two unit vectors that it is the half of.
     #[inline(always)]
     pub fn half_cos(&self) -> f32 {

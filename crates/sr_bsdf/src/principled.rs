@@ -126,6 +126,7 @@ impl Principled {
     }
 
     /// `None` if nothing can be seen from there.
+    #[inline(always)]
     fn seen_from_above(&self, wo: Vec3, wi: Vec3) -> Option<Pair> {
         let is_front = wo.z > 0.0;
         let pair = match is_front {
@@ -136,6 +137,7 @@ impl Principled {
     }
 
     /// Fresnel's factor of the main reflection: a dielectric, its tinted share, and a metal.
+    #[inline(always)]
     fn fresnel(&self, cos: f32, split: &DielectricSplit, is_front: bool) -> Rgb {
         if split.reflectance <= 0.0 {
             return Rgb::ZERO;
@@ -155,16 +157,19 @@ impl Principled {
     }
 
     /// Probability that a facet of the main lobe transmits, given that the main lobe was chosen.
+    #[inline(always)]
     fn transmits(&self, split: &DielectricSplit, is_front: bool) -> f32 {
         if is_front { self.bsdf * split.transmittance } else { split.transmittance }
     }
 
     /// Probability of the main lobe.
+    #[inline(always)]
     fn main(&self, is_front: bool) -> f32 {
         if is_front { self.choice[1] } else { 1.0 }
     }
 
     /// f and the density of two directions above the surface, m being their half vector.
+    #[inline(always)]
     fn reflection(&self, pair: &Pair, m: Vec3) -> (Rgb, f32) {
         let &Pair { wo, wi, eta, is_front } = pair;
         let cos = wo.dot(m);
@@ -189,6 +194,7 @@ impl Principled {
         (f, pdf)
     }
 
+    #[inline(always)]
     fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
         let nothing = (Rgb::ZERO, 0.0);
         let Some(pair) = self.seen_from_above(wo, wi) else { return nothing };
@@ -210,6 +216,7 @@ impl Principled {
     }
 
     /// A facet of the main lobe refracts.
+    #[inline(always)]
     fn refracted(&self, pair: &Pair, m: Vec3, split: &DielectricSplit) -> Option<BsdfSample> {
         let &Pair { wo, eta, is_front, .. } = pair;
         let wi = refract_about(wo, m, *split);
@@ -231,10 +238,12 @@ impl Principled {
 }
 
 impl Bsdf for Principled {
+    #[inline(always)]
     fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
         self.eval_pdf(wo, wi).0
     }
 
+    #[inline(always)]
     fn sample(&self, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
         let is_front = wo.z > 0.0;
         let mut pair = self.seen_from_above(wo, wo)?;
@@ -271,6 +280,7 @@ impl Bsdf for Principled {
         })
     }
 
+    #[inline(always)]
     fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
         self.eval_pdf(wo, wi).1
     }

@@ -104,45 +104,54 @@ impl PrincipledThin {
         }
     }
 
-    /// f and the density, with `wo` above and the half vector `m` of `wo` and of `wi` brought above.
-    fn eval_pdf_above(&self, wo: Vec3, wi: Vec3, m: Vec3) -> (Rgb, f32) {
-        let cos = wo.dot(m);
+    /// f and the density, with `wo` above.
+    ///
+    /// Both sides' terms are found and one is picked: loops over many directions then need no branch.
+    #[inline(always)]
+    fn eval_pdf_above(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
+        let passes = wi.z < 0.0;
+        let above = wi.with_z(wi.z.abs());
+        let mirror = Facet::between(wo, above);
+        let cos = mirror.half_cos();
+        let kept = self.reflecting.reflection_pdf(wo, &mirror);
+        // A facet that the transmitted direction would have to cross again does not count.
+        let passed = self.transmitting.reflection_pdf(wo, &mirror);
+        let passed = if mirror.is_seen_from(wi) { 0.0 } else { passed };
         let split = dielectric(cos, self.eta);
         let diffuse = 1.0 - self.spec_trans;
-        let cosine_pdf = CosineHemisphere.pdf(wi.with_z(wi.z.abs()));
-        let lobe = |d: &Microfacet<Ggx>| {
-            let mirrored = d.reflection_pdf(wo, &Facet::of(m));
-            (mirrored / d.projected_area(wi), mirrored)
-        };
-        if wi.z < 0.0 {
-            // A facet that the transmitted direction would have to cross again does not count.
-            let (value, mirrored) = if wi.dot(m) < 0.0 { lobe(&self.transmitting) } else { (0.0, 0.0) };
-            let scale = self.spec_trans * split.transmittance * value + diffuse * self.diff_trans * FRAC_1_PI;
-            return (self.base_color * scale, self.choice[1] * mirrored + self.choice[3] * cosine_pdf);
-        }
+
+        let scale = self.spec_trans * split.transmittance * passed / self.transmitting.projected_area(above)
+            + diffuse * self.diff_trans * FRAC_1_PI;
+        let transmitted = self.base_color * scale;
+
         let tinted = schlick(tint(self.base_color) * r0(self.eta), cos, self.eta);
         let fresnel = Rgb::splat(split.reflectance).lerp(tinted, self.spec_tint);
-        let (value, mirrored) = lobe(&self.reflecting);
-        let (base, sheen) = self.base.eval(wo.z, wi.z, cos);
-        let f = fresnel * (self.spec_trans * value) + (base + sheen) * (diffuse * (1.0 - self.diff_trans));
-        (f, self.choice[0] * mirrored + self.choice[2] * cosine_pdf)
+        let (base, sheen) = self.base.eval(wo.z, above.z, cos);
+        let reflected = fresnel * (self.spec_trans * kept / self.reflecting.projected_area(above))
+            + (base + sheen) * (diffuse * (1.0 - self.diff_trans));
+
+        let cosine_pdf = CosineHemisphere.pdf(above);
+        let [reflect, transmit, scatter, scatter_through] = self.choice;
+        let pdf_passed = transmit * passed + scatter_through * cosine_pdf;
+        let pdf_kept = reflect * kept + scatter * cosine_pdf;
+        if passes { (transmitted, pdf_passed) } else { (reflected, pdf_kept) }
     }
 
+    #[inline(always)]
     fn eval_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
-        let (wo, wi) = if wo.z < 0.0 { (flip(wo), flip(wi)) } else { (wo, wi) };
-        let m = (wo + wi.with_z(wi.z.abs())).normalize_or_zero();
-        if wo.z <= 0.0 || wi.z == 0.0 || wo.dot(m) <= 0.0 {
-            return (Rgb::ZERO, 0.0);
-        }
-        self.eval_pdf_above(wo, wi, m)
+        let (up, wi) = if wo.z < 0.0 { (flip(wo), flip(wi)) } else { (wo, wi) };
+        let (f, pdf) = self.eval_pdf_above(up, wi);
+        if up.z == 0.0 || wi.z == 0.0 { (Rgb::ZERO, 0.0) } else { (f, pdf) }
     }
 }
 
 impl Bsdf for PrincipledThin {
+    #[inline(always)]
     fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
         self.eval_pdf(wo, wi).0
     }
 
+    #[inline(always)]
     fn sample(&self, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
         let is_below = wo.z < 0.0;
         let wo = if is_below { flip(wo) } else { wo };
@@ -158,15 +167,11 @@ impl Bsdf for PrincipledThin {
             CosineHemisphere.sample(u)?.value
         };
         let stays = if is_mirrored { u_lobe < reflect } else { u_lobe < reflect + transmit + scatter };
-        let m = (wo + above).normalize_or_zero();
-        if above.z <= 0.0 || wo.dot(m) <= 0.0 {
-            return None;
-        }
         let wi = if stays { above } else { flip(above) };
-        if is_mirrored && !stays && wi.dot(m) >= 0.0 {
+        if above.z <= 0.0 || (is_mirrored && !stays && Facet::between(wo, above).is_seen_from(wi)) {
             return None;
         }
-        let (f, pdf) = self.eval_pdf_above(wo, wi, m);
+        let (f, pdf) = self.eval_pdf_above(wo, wi);
         let weight = f * (above.z / pdf);
         let wi = if is_below { flip(wi) } else { wi };
         (pdf > f32::MIN_POSITIVE && pdf.is_finite() && weight != Rgb::ZERO).then_some(BsdfSample {
@@ -178,6 +183,7 @@ impl Bsdf for PrincipledThin {
         })
     }
 
+    #[inline(always)]
     fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
         self.eval_pdf(wo, wi).1
     }

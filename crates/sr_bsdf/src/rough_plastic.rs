@@ -82,14 +82,17 @@ impl<'a, S: MicrofacetShape> RoughPlastic<'a, S> {
     }
 }
 
-/// Nothing here branches, so that compilers can serve many points at a time: what does not count is computed as well.
+/// `sample` and `pdf` do not branch, so that compilers can serve many points at a time: what does not count is computed as
+/// well. `eval`, with two places in the table, is not served so, and leaves early.
 impl<S: MicrofacetShape> Bsdf for RoughPlastic<'_, S> {
     #[inline(always)]
     fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
+        if wo.z <= 0.0 || wi.z <= 0.0 {
+            return Rgb::ZERO;
+        }
         let mirror = Facet::between(wo, wi);
         let t_o = self.coat.transmittance(wo.z);
-        let (f, _) = self.eval_pdf(wo, wi, &mirror, self.lobe_probabilities(t_o), t_o);
-        Rgb::select(BVec3::splat(wo.z > 0.0 && wi.z > 0.0), f, Rgb::ZERO)
+        self.eval_pdf(wo, wi, &mirror, self.lobe_probabilities(t_o), t_o).0
     }
 
     #[inline(always)]
