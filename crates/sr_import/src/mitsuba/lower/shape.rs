@@ -154,7 +154,8 @@ impl<'a> Lowering<'a, '_> {
     fn mesh_file(&mut self, node: &'a Node, props: &mut Props<'a>) -> Option<Form> {
         let placement = self.placement(props);
         let flip = props.boolean("flip_tex_coords", self.out.d);
-        props.ignore(&["load_materials", "shape_name", "srgb", "vertex_color"]);
+        props.unsupported(&["shape_name"], "all that the file holds is shown", self.out.d);
+        props.ignore(&["load_materials", "srgb", "vertex_color"]);
         let (format, flip_v) = match node.kind.as_str() {
             // OBJ counts v from the bottom row of an image, and says so in no file.
             "obj" => (Format::Obj, flip.unwrap_or(true)),

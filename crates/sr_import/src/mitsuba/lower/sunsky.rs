@@ -101,8 +101,10 @@ impl<'a> Lowering<'a, '_> {
                 .consequence("its disk has the same radiance all over it"),
             );
         }
-        // What is of no use is of no interest either.
-        props.ignore(&["resolution", "stretch", "sun_radius_scale", "samples"]);
+        props.unsupported(&["stretch"], "the horizon is where it is", self.out.d);
+        props.unsupported(&["sun_radius_scale"], "the sun has the size of \"sun_aperture\"", self.out.d);
+        // Of tables and estimates that are not made here.
+        props.ignore(&["resolution", "samples"]);
         let (world_from_light, sun_direction) =
             (world_from_light.as_mat3(), sun_direction.as_vec3().normalize_or_zero());
         let span = || node.span.clone();
