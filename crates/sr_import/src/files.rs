@@ -1,7 +1,7 @@
 //! Opening what a scene file names: only regular files, only up to a size, found along search paths.
 
 use std::fs::File;
-use std::io::Read;
+use std::io::{Cursor, Read};
 use std::path::{Path, PathBuf};
 
 use sr_scene::{Diagnostic, Span};
@@ -15,6 +15,17 @@ pub const MAX_SCENE_BYTES: u64 = 256 << 20;
 
 /// The whole content of a regular file of at most `limit` bytes; the error is half a sentence.
 pub fn read(path: &Path, limit: u64) -> Result<Vec<u8>, String> {
+    let (file, length) = regular(path, limit)?;
+    let mut bytes = Vec::with_capacity(length as usize);
+    file.take(limit + 1).read_to_end(&mut bytes).map_err(|e| reason(&e))?;
+    if bytes.len() as u64 > limit {
+        return Err(format!("it grew beyond {limit} bytes while being read"));
+    }
+    Ok(bytes)
+}
+
+/// A regular file of at most `limit` bytes, and how many it has.
+fn regular(path: &Path, limit: u64) -> Result<(File, u64), String> {
     // Looked at before it is opened: opening a FIFO would wait for a writer.
     let metadata = std::fs::metadata(path).map_err(|e| reason(&e))?;
     if metadata.is_dir() {
@@ -27,13 +38,31 @@ pub fn read(path: &Path, limit: u64) -> Result<Vec<u8>, String> {
         return Err(format!("it has {} bytes; at most {limit} are read", metadata.len()));
     }
     let file = File::open(path).map_err(|e| reason(&e))?;
-    let mut bytes = Vec::new();
-    file.take(limit + 1).read_to_end(&mut bytes).map_err(|e| reason(&e))?;
-    if bytes.len() as u64 > limit {
-        return Err(format!("it grew beyond {limit} bytes while being read"));
-    }
-    Ok(bytes)
+    Ok((file, metadata.len()))
 }
+
+/// What a file holds, to be read from its beginning to its end.
+pub struct Content {
+    /// At most [`Content::length`] bytes.
+    pub reader: Box<dyn Read>,
+    /// Of the content in bytes.
+    pub length: u64,
+}
+
+/// Opens a regular file that is not read at once. What gzip has packed is unpacked in memory.
+pub fn open(path: &Path) -> Result<Content, String> {
+    let (mut file, length) = regular(path, MAX_FILE_BYTES)?;
+    let mut start = Vec::new();
+    file.by_ref().take(GZIP.len() as u64).read_to_end(&mut start).map_err(|e| reason(&e))?;
+    if start == GZIP {
+        let bytes = unpacked(read(path, MAX_FILE_BYTES)?, MAX_UNPACKED_BYTES)?;
+        return Ok(Content { length: bytes.len() as u64, reader: Box::new(Cursor::new(bytes)) });
+    }
+    Ok(Content { reader: Box::new(Cursor::new(start).chain(file).take(length)), length })
+}
+
+/// How files begin that gzip has packed.
+const GZIP: [u8; 2] = [0x1f, 0x8b];
 
 /// The text of a scene file.
 pub fn read_text(path: &Path) -> Result<String, String> {
@@ -45,7 +74,7 @@ pub fn read_text(path: &Path) -> Result<String, String> {
 
 /// What gzip has packed into `bytes`, or `bytes` themselves if it has not packed them; the error is half a sentence.
 pub fn unpacked(bytes: Vec<u8>, limit: u64) -> Result<Vec<u8>, String> {
-    if !bytes.starts_with(&[0x1f, 0x8b]) {
+    if !bytes.starts_with(&GZIP) {
         return Ok(bytes);
     }
     let mut out = Vec::new();
@@ -57,7 +86,8 @@ pub fn unpacked(bytes: Vec<u8>, limit: u64) -> Result<Vec<u8>, String> {
     Ok(out)
 }
 
-fn reason(error: &std::io::Error) -> String {
+/// Half a sentence.
+pub fn reason(error: &std::io::Error) -> String {
     match error.kind() {
         std::io::ErrorKind::NotFound => "there is no such file".into(),
         std::io::ErrorKind::PermissionDenied => "permission denied".into(),

@@ -51,7 +51,7 @@ impl Assembly<'_> {
         let colors = self.textures.iter().any(|t| matches!(t, TextureDesc::MeshColor { .. }));
         pending.iter_mut().for_each(|mesh| mesh.placement.colors = colors);
         let files = read_files(&pending);
-        let mut placed = place_all(&pending, &files);
+        let mut placed = place_all(&mut pending, files);
         let mut degenerate = Vec::new();
         let mut bad_normals = Vec::new();
         let mut empty = Vec::new();
@@ -171,18 +171,11 @@ fn read_files(pending: &[PendingMesh]) -> HashMap<FileKey, Result<RawMesh, Strin
 
 type Placed = Result<(Arc<MeshDesc>, Report), String>;
 
-/// Every pending mesh in place; meshes that are placed alike share their memory.
-fn place_all(pending: &[PendingMesh], files: &HashMap<FileKey, Result<RawMesh, String>>) -> Vec<Placed> {
-    let raw: Vec<Result<RawMesh, String>> = pending
-        .iter()
-        .map(|mesh| match &mesh.source {
-            MeshSource::Memory(desc) => Ok(RawMesh { mesh: desc.clone(), fans: [].into() }),
-            MeshSource::File { path, format, flip_v } => files
-                .get(&(path.clone(), *format, *flip_v))
-                .cloned()
-                .unwrap_or_else(|| Err("it was not read".into())),
-        })
-        .collect();
+/// Every pending mesh in place; meshes that are placed alike share their memory. What was read is let go as soon as it is in
+/// place, or becomes that which is in place.
+fn place_all(pending: &mut [PendingMesh], files: HashMap<FileKey, Result<RawMesh, String>>) -> Vec<Placed> {
+    let mut raw: Vec<Result<RawMesh, String>> = pending.iter_mut().map(|mesh| taken(mesh, &files)).collect();
+    drop(files);
     // The first mesh that is the same, for each.
     let mut first: HashMap<(usize, String), usize> = HashMap::new();
     let twin: Vec<usize> = pending
@@ -196,26 +189,53 @@ fn place_all(pending: &[PendingMesh], files: &HashMap<FileKey, Result<RawMesh, S
             Err(_) => i,
         })
         .collect();
-    let placed: Vec<Option<Placed>> = pending
-        .par_iter()
-        .zip(&raw)
-        .zip(&twin)
-        .enumerate()
-        .map(|(i, ((mesh, raw), &twin))| {
-            (twin == i).then(|| {
-                let raw = raw.as_ref().map_err(Clone::clone)?;
-                mesh::place(raw, &mesh.placement).map(|(desc, report)| (Arc::new(desc), report))
-            })
-        })
+    let mut faces = 0;
+    for (i, raw) in raw.iter_mut().enumerate() {
+        if twin[i] != i {
+            *raw = Err("it is placed elsewhere".into());
+        } else if let Ok(found) = &raw
+            && let Some(how) = pending[i].placement.subdivision
+        {
+            match how.faces(&found.mesh, &found.fans) {
+                Ok(more) if faces + more <= MAX_SUBDIVIDED => faces += more,
+                Ok(_) => {
+                    *raw = Err(format!("all meshes subdivided would have more than {MAX_SUBDIVIDED} faces"))
+                }
+                Err(reason) => *raw = Err(reason),
+            }
+        }
+    }
+    let placed: Vec<Placed> = raw
+        .into_par_iter()
+        .zip(&*pending)
+        .map(|(raw, mesh)| mesh::place(raw?, &mesh.placement).map(|(desc, report)| (Arc::new(desc), report)))
         .collect();
+    // What is wrong with a mesh is said once.
+    let again = |twin: usize| placed[twin].clone().map(|(mesh, _)| (mesh, Report::default()));
     twin.iter()
         .enumerate()
-        .map(|(i, &twin)| {
-            let result = placed[twin].clone().unwrap_or_else(|| Err("it was not placed".into()));
-            // What is wrong with a mesh is said once.
-            if twin == i { result } else { result.map(|(mesh, _)| (mesh, Report::default())) }
-        })
+        .map(|(i, &twin)| if twin == i { placed[i].clone() } else { again(twin) })
         .collect()
+}
+
+/// Faces of all subdivided meshes together.
+const MAX_SUBDIVIDED: u64 = 1 << 22;
+
+/// What was read for a mesh; of what lay in memory, the name is left.
+fn taken(
+    mesh: &mut PendingMesh,
+    files: &HashMap<FileKey, Result<RawMesh, String>>,
+) -> Result<RawMesh, String> {
+    match &mut mesh.source {
+        MeshSource::Memory(desc) => {
+            let name = MeshDesc { name: desc.name.clone(), ..MeshDesc::default() };
+            Ok(RawMesh { mesh: std::mem::replace(desc, Arc::new(name)), fans: [].into() })
+        }
+        MeshSource::File { path, format, flip_v } => files
+            .get(&(path.clone(), *format, *flip_v))
+            .cloned()
+            .unwrap_or_else(|| Err("it was not read".into())),
+    }
 }
 
 fn source_name(source: &MeshSource) -> String {

@@ -37,12 +37,12 @@ pub enum Format {
 
 /// Reads a file; the error is half a sentence.
 pub fn load(path: &Path, format: Format, flip_v: bool) -> Result<RawMesh, String> {
-    let bytes = files::unpacked(files::read(path, files::MAX_FILE_BYTES)?, files::MAX_UNPACKED_BYTES)?;
+    let whole = || files::unpacked(files::read(path, files::MAX_FILE_BYTES)?, files::MAX_UNPACKED_BYTES);
     let mut fans = Fans::default();
     let mut mesh = match format {
-        Format::Obj => obj::parse(&bytes, &mut fans)?,
-        Format::Ply => ply::parse(&bytes, &mut fans)?,
-        Format::Serialized { index } => serialized::parse(&bytes, index)?,
+        Format::Obj => obj::parse(&whole()?, &mut fans)?,
+        Format::Ply => ply::parse(files::open(path)?, &mut fans)?,
+        Format::Serialized { index } => serialized::parse(&whole()?, index)?,
     };
     mesh.name = path.display().to_string();
     if flip_v {
@@ -75,6 +75,13 @@ impl Fans {
         }
         if !self.0.is_empty() || count != 1 {
             self.0.push(count as u32);
+        }
+    }
+
+    /// So many triangles.
+    fn add_triangles(&mut self, count: usize) {
+        if !self.0.is_empty() {
+            self.0.resize(self.0.len() + count, 1);
         }
     }
 }

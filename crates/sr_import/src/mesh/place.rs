@@ -1,6 +1,9 @@
 //! A mesh as it was read to a mesh in world space: transform, normals, orientation, checks.
 
+use std::sync::Arc;
+
 use glam::{DMat3, DMat4, Vec3};
+use rayon::prelude::*;
 use sr_scene::MeshDesc;
 
 use super::subdivide::{Subdivision, subdivide};
@@ -47,66 +50,88 @@ pub struct Report {
     pub bad_normals: usize,
 }
 
-/// Places a mesh; the error is half a sentence.
+/// Places a mesh; the error is half a sentence. A mesh that nobody else holds is changed where it is.
 ///
 /// The front is where vertex normals point (transformed by the inverse transpose); without them it is as the
 /// [`Convention`] has it.
-pub fn place(RawMesh { mesh, fans }: &RawMesh, placement: &Placement) -> Result<(MeshDesc, Report), String> {
-    check(mesh)?;
+pub fn place(RawMesh { mesh, fans }: RawMesh, placement: &Placement) -> Result<(MeshDesc, Report), String> {
+    check(&mesh)?;
     if let Some(how) = placement.subdivision {
-        return placed(&subdivide(mesh, fans, how)?, &Placement { flat: false, ..placement.clone() });
+        return placed(subdivide(&mesh, &fans, how)?, &Placement { flat: false, ..placement.clone() });
     }
-    placed(mesh, placement)
+    placed(Arc::unwrap_or_clone(mesh), placement)
 }
 
-fn placed(mesh: &MeshDesc, placement: &Placement) -> Result<(MeshDesc, Report), String> {
+fn placed(mut mesh: MeshDesc, placement: &Placement) -> Result<(MeshDesc, Report), String> {
     let Placement { to_world, .. } = *placement;
     let linear = DMat3::from_mat4(to_world);
-    let positions: Vec<Vec3> =
-        mesh.positions.iter().map(|p| to_world.transform_point3(p.as_dvec3()).as_vec3()).collect();
-    if let Some(vertex) = positions.iter().position(|p| !p.is_finite()) {
+    let to_world = |p: &mut Vec3| *p = to_world.transform_point3(p.as_dvec3()).as_vec3();
+    mesh.positions.par_iter_mut().with_min_len(SIDE_BY_SIDE).for_each(to_world);
+    if let Some(vertex) = position(&mesh.positions, |p| !p.is_finite()) {
         return Err(format!("vertex {vertex} is out of range after its transform"));
     }
     let mut report = Report::default();
-    let mut out = MeshDesc {
-        name: mesh.name.clone(),
-        positions,
-        uvs: mesh.uvs.clone(),
-        vertex_colors: if placement.colors { mesh.vertex_colors.clone() } else { Vec::new() },
-        ..MeshDesc::default()
-    };
+    if !placement.colors {
+        mesh.vertex_colors = Vec::new();
+        mesh.face_colors = Vec::new();
+    }
+    let stays_flat = placement.flat || (placement.convention == Convention::Flat && mesh.normals.is_empty());
+    let is_flat = placement.face_normals || stays_flat;
     let keeps_normals =
         !mesh.normals.is_empty() && !placement.face_normals && placement.max_smooth_angle.is_none();
     let keeps_front = keeps_normals || placement.convention == Convention::Flat;
     let mirrored = keeps_front && linear.determinant() < 0.0;
-    let stays_flat = placement.flat || (placement.convention == Convention::Flat && mesh.normals.is_empty());
-    for (index, &[a, b, c]) in mesh.triangles.iter().enumerate() {
-        if has_area([a, b, c].map(|i| out.positions[i as usize])) {
-            out.triangles.push(if mirrored { [a, c, b] } else { [a, b, c] });
-            out.face_colors.extend(mesh.face_colors.get(index).filter(|_| placement.colors));
-        }
+    report.degenerate = drop_degenerate(&mut mesh);
+    if mirrored != placement.flip_normals {
+        mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
     }
-    report.degenerate = mesh.triangles.len() - out.triangles.len();
-    if placement.face_normals || stays_flat {
+    if is_flat {
         // Flat shading needs no normals.
+        mesh.normals = Vec::new();
     } else if let Some(angle) = placement.max_smooth_angle {
-        normals::crease(&mut out, angle);
+        mesh.normals = Vec::new();
+        normals::crease(&mut mesh, angle);
     } else if mesh.normals.is_empty() {
-        out.normals = normals::smooth(&out.positions, &out.triangles);
+        mesh.normals = normals::smooth(&mesh.positions, &mesh.triangles);
     } else {
         // The cofactor matrix is the inverse transpose up to the determinant, whose sign is put back.
-        let cofactor = cofactor(linear) * linear.determinant().signum();
-        out.normals =
-            mesh.normals.iter().map(|n| (cofactor * n.as_dvec3()).normalize_or_zero().as_vec3()).collect();
-        repair(&mut out, &mut report);
+        let side = if placement.flip_normals {
+            -linear.determinant().signum()
+        } else {
+            linear.determinant().signum()
+        };
+        let cofactor = cofactor(linear) * side;
+        let turn = |n: &mut Vec3| *n = (cofactor * n.as_dvec3()).normalize_or_zero().as_vec3();
+        mesh.normals.par_iter_mut().with_min_len(SIDE_BY_SIDE).for_each(turn);
+        repair(&mut mesh, &mut report);
     }
     // Vertices that no triangle uses have no normal; any unit vector keeps the arrays well-formed.
-    out.normals.iter_mut().filter(|n| **n == Vec3::ZERO).for_each(|n| *n = Vec3::Z);
-    if placement.flip_normals {
-        out.triangles.iter_mut().for_each(|t| t.swap(1, 2));
-        out.normals.iter_mut().for_each(|n| *n = -*n);
+    mesh.normals.iter_mut().filter(|n| **n == Vec3::ZERO).for_each(|n| *n = Vec3::Z);
+    Ok((mesh, report))
+}
+
+/// As many elements are worth a thread.
+const SIDE_BY_SIDE: usize = 1 << 14;
+
+/// The first element of which this is so.
+fn position<T: Sync>(array: &[T], is_so: impl Fn(&T) -> bool + Sync + Send) -> Option<usize> {
+    array.par_iter().with_min_len(SIDE_BY_SIDE).position_first(is_so)
+}
+
+/// Leaves triangles without area out; how many there were.
+fn drop_degenerate(mesh: &mut MeshDesc) -> usize {
+    let positions = &mesh.positions;
+    let has_area = |t: &[u32; 3]| has_area(t.map(|i| positions[i as usize]));
+    if position(&mesh.triangles, |t| !has_area(t)).is_none() {
+        return 0;
     }
-    Ok((out, report))
+    let before = mesh.triangles.len();
+    let stays: Vec<bool> = mesh.triangles.iter().map(has_area).collect();
+    let mut each = stays.iter();
+    mesh.triangles.retain(|_| each.next() == Some(&true));
+    let mut each = stays.iter();
+    mesh.face_colors.retain(|_| each.next() == Some(&true));
+    before - mesh.triangles.len()
 }
 
 fn check(mesh: &MeshDesc) -> Result<(), String> {
@@ -124,13 +149,13 @@ fn check(mesh: &MeshDesc) -> Result<(), String> {
     if colors.into_iter().any(|c| !(c.is_finite() && c.min_element() >= 0.0)) {
         return Err("it has a color with negative or infinite parts".into());
     }
-    if let Some(vertex) = mesh.positions.iter().position(|p| !p.is_finite()) {
+    if let Some(vertex) = position(&mesh.positions, |p| !p.is_finite()) {
         return Err(format!("vertex {vertex} is {}, which is not finite", mesh.positions[vertex]));
     }
-    if let Some(vertex) = mesh.uvs.iter().position(|uv| !uv.is_finite()) {
+    if let Some(vertex) = position(&mesh.uvs, |uv| !uv.is_finite()) {
         return Err(format!("the texture coordinates of vertex {vertex} are not finite"));
     }
-    if let Some(at) = mesh.triangles.iter().position(|t| t.iter().any(|&i| i as usize >= n)) {
+    if let Some(at) = position(&mesh.triangles, |t| t.iter().any(|&i| i as usize >= n)) {
         return Err(format!(
             "triangle {at} uses the vertices {:?}, but there are only {n}",
             mesh.triangles[at]
@@ -140,6 +165,12 @@ fn check(mesh: &MeshDesc) -> Result<(), String> {
 }
 
 fn has_area([a, b, c]: [Vec3; 3]) -> bool {
+    // Angles that are far wider than what rounding makes of none need no closer look.
+    let (x, y) = (b - a, c - a);
+    let (cross, most) = (x.cross(y).length_squared(), x.length_squared() * y.length_squared());
+    if cross > 1e-10 * most && most > f32::MIN_POSITIVE && most < f32::MAX {
+        return true;
+    }
     let [a, b, c] = [a, b, c].map(|p| p.as_dvec3());
     (b - a).cross(c - a).length_squared() > 0.0
 }
@@ -182,7 +213,7 @@ mod tests {
     }
 
     fn raw_placed(mesh: &MeshDesc, placement: &Placement) -> Result<(MeshDesc, Report), String> {
-        place(&RawMesh { mesh: std::sync::Arc::new(mesh.clone()), fans: [].into() }, placement)
+        place(RawMesh { mesh: std::sync::Arc::new(mesh.clone()), fans: [].into() }, placement)
     }
 
     fn geometric(mesh: &MeshDesc, t: usize) -> Vec3 {
@@ -193,17 +224,17 @@ mod tests {
     #[test]
     fn a_mirrored_mesh_keeps_the_front_that_its_normals_tell() {
         let mirror = DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0));
-        let (cube, _) = placed(&primitives::cube(), &placement(mirror)).unwrap();
+        let (cube, _) = placed(primitives::cube(), &placement(mirror)).unwrap();
         for t in 0..12 {
             assert!(geometric(&cube, t).dot(cube.positions[cube.triangles[t][0] as usize]) > 0.0);
         }
         // Without normals the front of Mitsuba's mesh files turns with the corners.
         let file = MeshDesc { normals: Vec::new(), ..primitives::rectangle() };
-        let (square, _) = placed(&file, &placement(mirror)).unwrap();
+        let (square, _) = placed(file, &placement(mirror)).unwrap();
         assert_eq!(geometric(&square, 0), Vec3::NEG_Z);
         // Elsewhere the front stays the front.
         let flat = Placement { convention: Convention::Flat, ..placement(mirror) };
-        let (square, _) = placed(&primitives::rectangle(), &flat).unwrap();
+        let (square, _) = placed(primitives::rectangle(), &flat).unwrap();
         assert_eq!(geometric(&square, 0), Vec3::Z);
         assert!(square.normals.is_empty());
     }
@@ -212,7 +243,7 @@ mod tests {
     fn normals_stay_perpendicular_under_shear_and_scale() {
         let shear =
             DMat4::from_cols_array(&[1., 0., 0., 0., 2., 3., 0., 0., 0., 0., -0.5, 0., 0., 0., 0., 1.]);
-        let (cube, report) = placed(&primitives::cube(), &placement(shear)).unwrap();
+        let (cube, report) = placed(primitives::cube(), &placement(shear)).unwrap();
         assert_eq!(report, Report::default());
         for (t, corners) in cube.triangles.iter().enumerate() {
             assert!((geometric(&cube, t) - cube.normals[corners[0] as usize]).length() < 1e-6);
@@ -222,7 +253,7 @@ mod tests {
     #[test]
     fn flipping_turns_corners_and_normals() {
         let flip = Placement { flip_normals: true, ..placement(DMat4::IDENTITY) };
-        let (cube, _) = placed(&primitives::cube(), &flip).unwrap();
+        let (cube, _) = placed(primitives::cube(), &flip).unwrap();
         assert_eq!(geometric(&cube, 0), Vec3::Y);
         assert_eq!(cube.normals[0], Vec3::Y);
     }

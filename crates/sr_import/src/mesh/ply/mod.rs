@@ -1,8 +1,9 @@
-//! Stanford PLY: headers and text by a library, binary of both byte orders by [`binary`].
+//! Stanford PLY: headers and text by a library, binary of both byte orders by [`binary`]. Files are read from their
+//! beginning to their end, never held as a whole.
 
 mod binary;
 
-use std::io::{BufRead, Cursor};
+use std::io::{BufRead, BufReader, Cursor, Read};
 
 use glam::{Vec2, Vec3};
 use ply_rs_bw::parser::{Parser, Reader};
@@ -12,19 +13,24 @@ use ply_rs_bw::ply::{
 use sr_scene::MeshDesc;
 
 use super::{Fans, MAX_ELEMENTS};
+use crate::files::{self, Content};
 
 /// Parses a file.
-pub fn parse(bytes: &[u8], fans: &mut Fans) -> Result<MeshDesc, String> {
-    let mut reader = Reader::new(Cursor::new(bytes));
-    let header = Parser::<Ignored>::new().read_header(&mut reader).map_err(|e| one_line(&e))?;
+pub fn parse(Content { reader, length }: Content, fans: &mut Fans) -> Result<MeshDesc, String> {
+    let mut stream = BufReader::with_capacity(1 << 16, reader);
+    let mut text = Reader::new(Cursor::new(header_of(&mut stream)?));
+    let header = Parser::<Ignored>::new().read_header(&mut text).map_err(|e| one_line(&e))?;
     let mut mesh = MeshDesc::default();
-    let mut data = match header.encoding {
-        Encoding::Ascii => None,
-        other => binary::Data::after_header(bytes, other == Encoding::BinaryBigEndian),
+    let (mut reader, mut data) = match header.encoding {
+        Encoding::Ascii => (Reader::new(Box::new(stream) as Box<dyn BufRead>), None),
+        order => {
+            let nothing = Reader::new(Box::new(std::io::empty()) as Box<dyn BufRead>);
+            (nothing, Some(binary::Data::new(stream, length, order == Encoding::BinaryBigEndian)))
+        }
     };
     for (name, element) in &header.elements {
         // An element takes at least a byte: a count beyond the file's size is a lie that would cost time and memory.
-        if element.count > bytes.len().min(MAX_ELEMENTS) {
+        if element.count as u64 > length.min(MAX_ELEMENTS as u64) {
             return Err(format!("{} elements \"{name}\" do not fit into the file", element.count));
         }
         if name == "vertex" && !Columns::of(element).positions {
@@ -45,6 +51,25 @@ pub fn parse(bytes: &[u8], fans: &mut Fans) -> Result<MeshDesc, String> {
         return Err("it has no vertices".into());
     }
     Ok(mesh)
+}
+
+/// All lines to that which ends the header.
+fn header_of(stream: &mut impl BufRead) -> Result<Vec<u8>, String> {
+    const MAX_HEADER: u64 = 1 << 20;
+    let mut header = Vec::new();
+    let mut stream = stream.take(MAX_HEADER);
+    loop {
+        let before = header.len();
+        stream.read_until(b'\n', &mut header).map_err(|e| files::reason(&e))?;
+        let line = header[before..].trim_ascii_end();
+        if line == b"end_header" {
+            return Ok(header);
+        }
+        if line.len() == header.len() - before {
+            // There is no further line: the parser says what is missing.
+            return Ok(header);
+        }
+    }
 }
 
 fn read<E: PropertyAccess>(
@@ -268,6 +293,12 @@ impl PropertyAccess for Ignored {
 }
 
 #[cfg(test)]
+fn parse_bytes(bytes: &[u8], fans: &mut Fans) -> Result<MeshDesc, String> {
+    let reader = Box::new(Cursor::new(bytes.to_vec()));
+    parse(Content { reader, length: bytes.len() as u64 }, fans)
+}
+
+#[cfg(test)]
 mod tests {
     use super::*;
 
@@ -295,20 +326,20 @@ mod tests {
     fn text_and_both_byte_orders_give_the_same_mesh() {
         let mut ascii = header("ascii", "x y z u v");
         ascii.extend(b"0 0 0.5 0 0\n1 0 0.5 1 0\n1 1 0.5 1 1\n0 1 5e-1 0 1\n4 0 1 2 3\n");
-        let mesh = parse(&ascii, &mut Fans::default()).unwrap();
+        let mesh = parse_bytes(&ascii, &mut Fans::default()).unwrap();
         assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
         assert_eq!(mesh.positions[2], Vec3::new(1.0, 1.0, 0.5));
         assert_eq!(mesh.uvs[3], Vec2::new(0.0, 1.0));
         assert!(mesh.normals.is_empty());
-        assert_eq!(parse(&binary(false), &mut Fans::default()).unwrap(), mesh);
-        assert_eq!(parse(&binary(true), &mut Fans::default()).unwrap(), mesh);
+        assert_eq!(parse_bytes(&binary(false), &mut Fans::default()).unwrap(), mesh);
+        assert_eq!(parse_bytes(&binary(true), &mut Fans::default()).unwrap(), mesh);
     }
 
     #[test]
     fn every_truncation_is_an_error() {
         let whole = binary(false);
         for cut in 0..whole.len() {
-            assert!(parse(&whole[..cut], &mut Fans::default()).is_err(), "cut at {cut}");
+            assert!(parse_bytes(&whole[..cut], &mut Fans::default()).is_err(), "cut at {cut}");
         }
     }
 
@@ -319,7 +350,7 @@ mod tests {
                 "ply\nformat ascii 1.0\nelement junk {count}\nelement vertex 0\nproperty float x\n\
                  property float y\nproperty float z\nend_header\n"
             );
-            assert!(parse(text.as_bytes(), &mut Fans::default()).is_err());
+            assert!(parse_bytes(text.as_bytes(), &mut Fans::default()).is_err());
         }
     }
 
@@ -329,7 +360,7 @@ mod tests {
                     property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 1\n\
                     property list uchar int vertex_indices\nproperty float r\nproperty float g\nproperty float b\n\
                     end_header\n0 0 0 255 0 51\n1 0 0 0 255 0\n0 1 0 0 0 255\n3 0 1 2 0.5 0.25 2\n";
-        let mesh = parse(text.as_bytes(), &mut Fans::default()).unwrap();
+        let mesh = parse_bytes(text.as_bytes(), &mut Fans::default()).unwrap();
         assert_eq!(mesh.vertex_colors[0], Vec3::new(1.0, 0.0, 0.2));
         assert_eq!(mesh.face_colors, [Vec3::new(0.5, 0.25, 2.0)]);
         let header = text.split_inclusive("end_header\n").next().unwrap();
@@ -343,6 +374,6 @@ mod tests {
         bytes.push(3);
         (0..3i32).for_each(|i| bytes.extend(i.to_le_bytes()));
         [0.5f32, 0.25, 2.0].iter().for_each(|v| bytes.extend(v.to_le_bytes()));
-        assert_eq!(parse(&bytes, &mut Fans::default()).unwrap(), mesh);
+        assert_eq!(parse_bytes(&bytes, &mut Fans::default()).unwrap(), mesh);
     }
 }

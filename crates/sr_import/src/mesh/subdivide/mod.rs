@@ -18,7 +18,7 @@ use super::normals;
 use topology::{Edges, Surface};
 
 /// Faces that are made at most.
-const MAX_FACES: u64 = 1 << 22;
+const MAX_FACES: u64 = 1 << 20;
 
 /// How to refine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,22 +38,31 @@ pub struct Subdivision {
     pub levels: u32,
 }
 
+impl Subdivision {
+    /// How many faces a mesh will have; the error, half a sentence, where these are too many.
+    pub fn faces(&self, mesh: &MeshDesc, fans: &[u32]) -> Result<u64, String> {
+        let triangles = mesh.triangles.len() as u64;
+        // The first time makes four of a triangle, and of a polygon as many as it has corners.
+        let first = match self.scheme {
+            Scheme::CatmullClark if !fans.is_empty() => triangles + 2 * fans.len() as u64,
+            Scheme::CatmullClark => 3 * triangles,
+            Scheme::Loop => 4 * triangles,
+        };
+        let growth = 4u64.checked_pow(self.levels.saturating_sub(1));
+        growth.and_then(|growth| first.checked_mul(growth)).filter(|&faces| faces <= MAX_FACES).ok_or_else(|| {
+            format!(
+                "subdivided {} times it would have more than {MAX_FACES} faces; the first time makes {first}",
+                self.levels
+            )
+        })
+    }
+}
+
 /// Refines a mesh whose indices are valid; `fans` tells the triangles of each polygon (empty: one each). The error is half
 /// a sentence.
 pub fn subdivide(mesh: &MeshDesc, fans: &[u32], how: Subdivision) -> Result<MeshDesc, String> {
     let fans = if how.scheme == Scheme::CatmullClark { fans } else { &[] };
     let mut surface = welded(mesh, fans);
-    let faces = match how.scheme {
-        Scheme::Loop => surface.face_count() as u64 * 4,
-        Scheme::CatmullClark => surface.corners.len() as u64,
-    };
-    let growth = 4u64.checked_pow(how.levels - 1);
-    if growth.and_then(|growth| faces.checked_mul(growth)).is_none_or(|faces| faces > MAX_FACES) {
-        return Err(format!(
-            "subdivided {} times it would have more than {MAX_FACES} faces; at least {faces} a time",
-            how.levels
-        ));
-    }
     for _ in 0..how.levels {
         let edges = Edges::of(&surface);
         surface = match how.scheme {
@@ -255,8 +264,14 @@ mod tests {
         assert_eq!(quads.triangles.len(), 2 * 24 * 4);
         // closed: as many vertices as Euler's formula has
         assert_eq!(quads.positions.len(), 24 * 4 + 2);
-        assert!(subdivide(&cube, &fans, how(Scheme::CatmullClark, 10)).unwrap_err().contains("10 times"));
-        assert!(subdivide(&cube, &fans, how(Scheme::Loop, u32::MAX)).is_err());
+        for (scheme, levels) in [(Scheme::Loop, 2), (Scheme::CatmullClark, 2)] {
+            let counted = how(scheme, levels).faces(&cube, &fans).unwrap();
+            let made = subdivide(&cube, &fans, how(scheme, levels)).unwrap().triangles.len() as u64;
+            assert_eq!(counted * if scheme == Scheme::Loop { 1 } else { 2 }, made);
+        }
+        let too_many = how(Scheme::CatmullClark, 10).faces(&cube, &fans);
+        assert!(too_many.unwrap_err().contains("10 times"));
+        assert!(how(Scheme::Loop, u32::MAX).faces(&cube, &fans).is_err());
     }
 
     #[test]
