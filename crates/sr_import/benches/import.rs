@@ -3,6 +3,7 @@
 //! For each file: seconds, the fastest of three; megabytes of the arrays that it ends in; the most memory that the first
 //! reading took beyond what the process had before (Linux), over these arrays.
 
+use std::io::Write;
 use std::path::Path;
 use std::time::Instant;
 
@@ -17,7 +18,7 @@ fn main() {
         let (scene, diagnostics) = load(Path::new(&name), &LoadOptions::default());
         let after = most_memory();
         let Some(scene) = scene else {
-            eprintln!("{}", diagnostics.render(false));
+            let _ = writeln!(std::io::stderr(), "{}", diagnostics.render(false));
             continue;
         };
         let arrays = bytes_of(&scene);
@@ -28,10 +29,13 @@ fn main() {
             began.elapsed().as_secs_f64()
         });
         let fastest = seconds.fold(f64::INFINITY, f64::min);
-        println!("{name}: {fastest:.2} s, arrays of {:.0} MB", arrays / MEGABYTE);
+        let mut out = std::io::stdout();
+        // A broken pipe is the reader's wish.
+        let _ = writeln!(out, "{name}: {fastest:.2} s, arrays of {:.0} MB", arrays / MEGABYTE);
         if let (Some(before), Some(after)) = (before, after) {
             let taken = after - before;
-            println!("  at most {:.0} MB, {:.2} of the arrays", taken / MEGABYTE, taken / arrays);
+            let _ =
+                writeln!(out, "  at most {:.0} MB, {:.2} of the arrays", taken / MEGABYTE, taken / arrays);
         }
     }
 }

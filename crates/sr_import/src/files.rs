@@ -49,13 +49,13 @@ pub struct Content {
     pub length: u64,
 }
 
-/// Opens a regular file that is not read at once. What gzip has packed is unpacked in memory.
-pub fn open(path: &Path) -> Result<Content, String> {
+/// Opens a regular file that is not read at once. What gzip has packed is unpacked in memory, at most `limit` bytes.
+pub fn open(path: &Path, limit: u64) -> Result<Content, String> {
     let (mut file, length) = regular(path, MAX_FILE_BYTES)?;
     let mut start = Vec::new();
     file.by_ref().take(GZIP.len() as u64).read_to_end(&mut start).map_err(|e| reason(&e))?;
     if start == GZIP {
-        let bytes = unpacked(read(path, MAX_FILE_BYTES)?, MAX_UNPACKED_BYTES)?;
+        let bytes = unpacked(read(path, MAX_FILE_BYTES)?, limit)?;
         return Ok(Content { length: bytes.len() as u64, reader: Box::new(Cursor::new(bytes)) });
     }
     Ok(Content { reader: Box::new(Cursor::new(start).chain(file).take(length)), length })

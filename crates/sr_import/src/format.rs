@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::{files, pbrt};
+use crate::pbrt;
 
 /// A format of scene files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,15 +31,6 @@ impl Format {
             });
             if is_pbrt { Self::Pbrt } else { Self::Mitsuba }
         })
-    }
-
-    /// The content of a file of this format, unpacked, as UTF-8 where it is text; the error is half a sentence.
-    pub fn read(self, path: &Path) -> Result<Vec<u8>, String> {
-        match self {
-            Self::Mitsuba => files::read_text(path).map(String::into_bytes),
-            Self::Pbrt => pbrt::read_text(path).map(String::into_bytes),
-            Self::Gltf => files::read(path, files::MAX_FILE_BYTES),
-        }
     }
 
     fn by_extension(name: &str) -> Option<Self> {

@@ -54,12 +54,21 @@ pub fn load(path: &Path, options: &LoadOptions) -> (Option<SceneDesc>, Diagnosti
         let scene = mesh_file::load(path, format, &mut diagnostics);
         return (scene, diagnostics);
     }
-    match format::Format::of_name(&name).read(path) {
-        Ok(content) => {
-            let directory = path.parent().unwrap_or(Path::new("")).to_owned();
-            let scene = load_content(&name, content.into(), directory, options, &mut diagnostics);
-            (scene, diagnostics)
+    let directory = path.parent().unwrap_or(Path::new("")).to_owned();
+    let directories =
+        || std::iter::once(directory.clone()).chain(options.search_paths.iter().cloned()).collect();
+    let loaded = match format::Format::of_name(&name) {
+        format::Format::Pbrt => {
+            pbrt::Text::read(path).map(|text| pbrt::load(&name, text, directories(), &mut diagnostics))
         }
+        format::Format::Mitsuba => files::read_text(path).map(|text| {
+            load_content(&name, text.into_bytes().into(), directories(), options, &mut diagnostics)
+        }),
+        format::Format::Gltf => files::read(path, files::MAX_FILE_BYTES)
+            .map(|bytes| gltf::load(&name, bytes, directories(), &mut diagnostics)),
+    };
+    match loaded {
+        Ok(scene) => (scene, diagnostics),
         Err(reason) => {
             let source = diagnostics.sources.add(name.as_str(), "");
             let message = format!("cannot read the scene {name}: {reason}");
@@ -77,7 +86,8 @@ pub fn load_str(
     options: &LoadOptions,
 ) -> (Option<SceneDesc>, Diagnostics) {
     let mut diagnostics = Diagnostics::default();
-    let scene = load_content(name, text.as_bytes().into(), directory.to_owned(), options, &mut diagnostics);
+    let directories = std::iter::once(directory.to_owned()).chain(options.search_paths.iter().cloned());
+    let scene = load_content(name, text.as_bytes().into(), directories.collect(), options, &mut diagnostics);
     (scene, diagnostics)
 }
 
@@ -94,11 +104,10 @@ pub fn gltf_extensions() -> Vec<(&'static str, String)> {
 fn load_content(
     name: &str,
     content: Cow<'_, [u8]>,
-    directory: PathBuf,
+    directories: Vec<PathBuf>,
     options: &LoadOptions,
     diagnostics: &mut Diagnostics,
 ) -> Option<SceneDesc> {
-    let directories = std::iter::once(directory).chain(options.search_paths.iter().cloned()).collect();
     if format::Format::of_name(name) == format::Format::Gltf {
         return gltf::load(name, content.into_owned(), directories, diagnostics);
     }
@@ -111,7 +120,7 @@ fn load_content(
     };
     match format::Format::of_text(name, &text) {
         format::Format::Mitsuba => mitsuba::load(name, &text, directories, &options.defines, diagnostics),
-        format::Format::Pbrt => pbrt::load(name, text, directories, diagnostics),
+        format::Format::Pbrt => pbrt::load(name, pbrt::Text::of(text.into_owned()), directories, diagnostics),
         format::Format::Gltf => gltf::load(name, text.into_owned().into_bytes(), directories, diagnostics),
     }
 }

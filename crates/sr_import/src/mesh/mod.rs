@@ -41,7 +41,7 @@ pub fn load(path: &Path, format: Format, flip_v: bool) -> Result<RawMesh, String
     let mut fans = Fans::default();
     let mut mesh = match format {
         Format::Obj => obj::parse(&whole()?, &mut fans)?,
-        Format::Ply => ply::parse(files::open(path)?, &mut fans)?,
+        Format::Ply => ply::parse(files::open(path, files::MAX_UNPACKED_BYTES)?, &mut fans)?,
         Format::Serialized { index } => serialized::parse(&whole()?, index)?,
     };
     mesh.name = path.display().to_string();

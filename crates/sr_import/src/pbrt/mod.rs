@@ -25,17 +25,16 @@ mod syntax;
 mod texture;
 mod transform;
 
-use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::PathBuf;
 
 use sr_scene::{Diagnostic, Diagnostics, MaterialId, SceneDesc, Span};
 
 use crate::assembly::Assembly;
-use crate::files;
 use params::Notes;
 use state::{Saved, State};
 pub use support::table as support_table;
+pub use syntax::Text;
 use texture::FloatTexture;
 
 /// Is this one of the words that a scene may begin with?
@@ -43,25 +42,19 @@ pub fn is_directive(word: &str) -> bool {
     support::names(support::DIRECTIVES).any(|directive| directive == word)
 }
 
-/// Text is read as UTF-8; what is none becomes `\u{fffd}`, which no keyword has.
-pub fn read_text(path: &std::path::Path) -> Result<String, String> {
-    let bytes = files::unpacked(files::read(path, files::MAX_SCENE_BYTES)?, files::MAX_SCENE_BYTES)?;
-    Ok(String::from_utf8(bytes).unwrap_or_else(|e| String::from_utf8_lossy(e.as_bytes()).into_owned()))
-}
-
 /// Loads a scene from text. Files are looked for in `directories`.
 pub fn load(
     name: &str,
-    text: Cow<'_, str>,
+    mut text: Text,
     directories: Vec<PathBuf>,
     diagnostics: &mut Diagnostics,
 ) -> Option<SceneDesc> {
     let source = diagnostics.sources.add(name, "");
-    let span = Span { source, bytes: 0..text.len().min(1) };
+    let span = Span { source, bytes: 0..text.text.len().min(1) };
     let mut reader = Reader::new(directories, diagnostics);
     reader.open_files.push(PathBuf::from(name));
-    reader.run(&text, source);
-    reader.out.d.sources.set_text(source, text);
+    reader.run(&mut text, source);
+    reader.out.d.sources.set_text(source, text.text);
     reader.finish(&span)
 }
 

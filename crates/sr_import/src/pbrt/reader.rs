@@ -7,8 +7,8 @@ use sr_scene::{Diagnostic, SourceId, Span};
 
 use super::params::Params;
 use super::state::{Active, Inherited, Saved, State};
-use super::syntax::{Result, Scanner, SyntaxError};
-use super::{Reader, read_text, support};
+use super::syntax::{Result, Scanner, SyntaxError, Text};
+use super::{Reader, support};
 use crate::color_space::ColorSpace;
 use crate::values::shown;
 
@@ -26,7 +26,7 @@ const MAX_ATTRIBUTES: usize = 256;
 
 impl Reader<'_> {
     /// Carries out a text. What cannot be understood is an error, and the end.
-    pub(super) fn run(&mut self, text: &str, source: SourceId) {
+    pub(super) fn run(&mut self, text: &mut Text, source: SourceId) {
         let mut scanner = Scanner::new(text);
         while !self.is_broken && scanner.peek().is_some() {
             if let Err(SyntaxError { message, bytes }) = self.directive(&mut scanner, source) {
@@ -181,8 +181,8 @@ impl Reader<'_> {
             self.is_broken = true;
             return;
         }
-        match read_text(&path) {
-            Ok(text) if self.included_bytes + text.len() > MAX_INCLUDED_BYTES => {
+        match Text::read(&path) {
+            Ok(text) if self.included_bytes + text.bytes > MAX_INCLUDED_BYTES => {
                 self.error(
                     "pbrt::include",
                     span,
@@ -190,12 +190,12 @@ impl Reader<'_> {
                 );
                 self.is_broken = true;
             }
-            Ok(text) => {
-                self.included_bytes += text.len();
+            Ok(mut text) => {
+                self.included_bytes += text.bytes;
                 let source = self.out.d.sources.add(path.display().to_string(), "");
                 self.open_files.push(path);
-                self.run(&text, source);
-                self.out.d.sources.set_text(source, text);
+                self.run(&mut text, source);
+                self.out.d.sources.set_text(source, text.text);
                 self.open_files.pop();
             }
             Err(reason) => {

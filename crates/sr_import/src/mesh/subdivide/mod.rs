@@ -12,13 +12,14 @@ mod topology;
 use std::collections::HashMap;
 
 use glam::{DVec3, Vec2, Vec3};
+use rayon::prelude::*;
 use sr_scene::MeshDesc;
 
 use super::normals;
 use topology::{Edges, Surface};
 
 /// Faces that are made at most.
-const MAX_FACES: u64 = 1 << 20;
+const MAX_FACES: u64 = 1 << 21;
 
 /// How to refine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -144,18 +145,20 @@ fn meshed(surface: &Surface, limit: &Limit, name: String) -> MeshDesc {
     if surface.uvs.is_empty() {
         return mesh;
     }
-    let mut known: HashMap<(u32, [u32; 2]), u32> = HashMap::new();
+    // Place, texture coordinates, corner: those of one vertex are neighbours once these are sorted.
+    let each = surface.corners.iter().zip(&surface.uvs).zip(0..);
+    let mut pairs: Vec<[u32; 4]> =
+        each.map(|((&vertex, uv), corner)| [vertex, uv.x.to_bits(), uv.y.to_bits(), corner]).collect();
+    pairs.par_sort_unstable();
     let mut source = Vec::new();
-    let corners = surface.corners.iter().zip(&surface.uvs).map(|(&vertex, uv)| {
-        let next = source.len() as u32;
-        let index = *known.entry((vertex, uv.to_array().map(f32::to_bits))).or_insert(next);
-        if index == next {
-            source.push(vertex);
-            mesh.uvs.push(*uv);
-        }
-        index
-    });
-    let corners: Vec<u32> = corners.collect();
+    let mut corners = vec![0; pairs.len()];
+    for same in pairs.chunk_by(|x, y| x[..3] == y[..3]) {
+        let [vertex, u, v, _] = same[0];
+        same.iter().for_each(|pair| corners[pair[3] as usize] = source.len() as u32);
+        source.push(vertex);
+        mesh.uvs.push(Vec2::new(f32::from_bits(u), f32::from_bits(v)));
+    }
+    drop(pairs);
     mesh.triangles.clear();
     for face in 0..surface.face_count() {
         super::fan(&corners[surface.range(face)], &mut mesh.triangles);

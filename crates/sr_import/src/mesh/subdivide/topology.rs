@@ -1,9 +1,9 @@
 //! Faces of any number of corners, the edges between them, and what is around a vertex.
 
-use std::collections::HashMap;
 use std::ops::Range;
 
 use glam::{DVec3, Vec2};
+use rayon::prelude::*;
 
 /// Rings of more faces are not followed: their normals come from the faces.
 const MAX_RING: usize = 256;
@@ -58,7 +58,7 @@ impl Surface {
 pub struct Edge {
     /// Its ends.
     pub ends: [u32; 2],
-    /// The first two faces at it.
+    /// The first and the last face at it.
     pub faces: [u32; 2],
     /// How many faces are at it.
     pub count: u32,
@@ -80,23 +80,24 @@ pub struct Edges {
 
 impl Edges {
     pub fn of(surface: &Surface) -> Self {
-        let mut known: HashMap<(u32, u32), u32> = HashMap::new();
-        let mut edges = Self { list: Vec::new(), after: Vec::with_capacity(surface.corners.len()) };
+        // Both ends, the corner where it begins, its face: sides of one edge are neighbours once these are sorted.
+        let mut sides: Vec<[u32; 4]> = Vec::with_capacity(surface.corners.len());
         for face in 0..surface.face_count() {
-            let corners = surface.face(face);
+            let (range, corners) = (surface.range(face), surface.face(face));
             for (i, &a) in corners.iter().enumerate() {
                 let b = corners[(i + 1) % corners.len()];
-                let next = edges.list.len() as u32;
-                let index = *known.entry((a.min(b), a.max(b))).or_insert(next);
-                if index == next {
-                    edges.list.push(Edge { ends: [a, b], faces: [face as u32; 2], count: 1 });
-                } else {
-                    let edge = &mut edges.list[index as usize];
-                    edge.count += 1;
-                    edge.faces[1] = face as u32;
-                }
-                edges.after.push(index);
+                sides.push([a.min(b), a.max(b), (range.start + i) as u32, face as u32]);
             }
+        }
+        sides.par_sort_unstable();
+        let mut edges = Self { list: Vec::new(), after: vec![0; sides.len()] };
+        for sides in sides.chunk_by(|x, y| x[..2] == y[..2]) {
+            let [low, high, corner, face] = sides[0];
+            let start = surface.corners[corner as usize];
+            let ends = [start, if start == low { high } else { low }];
+            let last = sides[sides.len() - 1][3];
+            sides.iter().for_each(|side| edges.after[side[2] as usize] = edges.list.len() as u32);
+            edges.list.push(Edge { ends, faces: [face, last], count: sides.len() as u32 });
         }
         edges
     }

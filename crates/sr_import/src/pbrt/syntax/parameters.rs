@@ -184,7 +184,7 @@ mod tests {
     use super::*;
 
     fn all(text: &str) -> Result<Vec<Parameter>> {
-        Scanner::new(text).parameters()
+        Scanner::new(&mut super::super::Text::of(text.into())).parameters()
     }
 
     #[test]

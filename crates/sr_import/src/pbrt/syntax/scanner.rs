@@ -1,21 +1,25 @@
 //! Bytes to words, strings and numbers.
 
 use std::borrow::Cow;
+use std::collections::HashMap;
 use std::ops::Range;
 
-use super::{Result, SyntaxError};
+use super::text::Numbers;
+use super::{Result, SyntaxError, Text, float, integer};
 use crate::values::shown;
 
 /// A place in a text, and what can be read there. Space and comments are passed over.
 pub struct Scanner<'t> {
     text: &'t str,
     at: usize,
+    /// See [`Text`]: those that were not asked for yet.
+    lists: HashMap<usize, Numbers>,
 }
 
 impl<'t> Scanner<'t> {
-    /// At the start of a text.
-    pub fn new(text: &'t str) -> Self {
-        Self { text, at: 0 }
+    /// At the start of a text, whose lists it takes.
+    pub fn new(text: &'t mut Text) -> Self {
+        Self { text: &text.text, at: 0, lists: std::mem::take(&mut text.lists) }
     }
 
     /// The first byte of what comes next; `None` at the end.
@@ -43,7 +47,7 @@ impl<'t> Scanner<'t> {
 
     /// Is a string the first of the values that come next?
     pub fn is_string_next(&mut self) -> bool {
-        let mut ahead = Self { text: self.text, at: self.at };
+        let mut ahead = Self { text: self.text, at: self.at, lists: HashMap::new() };
         ahead.skip(b'[');
         ahead.peek() == Some(b'"')
     }
@@ -107,16 +111,29 @@ impl<'t> Scanner<'t> {
 
     /// The numbers up to a closing bracket, or one. They are what parameters are mostly made of.
     pub fn floats(&mut self) -> Result<Vec<f32>> {
-        self.list(|word| word.parse::<f32>().ok().filter(|v| v.is_finite()))
+        match self.taken_out() {
+            Some(Numbers::Floats(values)) => Ok(values),
+            Some(Numbers::Integers(values)) => Ok(values.iter().map(|v| *v as f32).collect()),
+            None => self.list(float),
+        }
     }
 
     /// The whole numbers up to a closing bracket, or one.
     pub fn integers(&mut self) -> Result<Vec<i32>> {
-        self.list(|word| {
-            // "3.0" is one, too.
-            let as_float = || word.parse::<f64>().ok().filter(|v| v.fract() == 0.0 && v.abs() < 2e9);
-            word.parse::<i32>().ok().or_else(|| as_float().map(|v| v as i32))
-        })
+        match self.taken_out() {
+            Some(Numbers::Integers(values)) => Ok(values),
+            Some(Numbers::Floats(_)) => Err(self.unexpected("a whole number")),
+            None => self.list(integer),
+        }
+    }
+
+    /// The list that comes next, if it was taken out of the text.
+    fn taken_out(&mut self) -> Option<Numbers> {
+        self.peek();
+        let numbers = self.lists.remove(&self.at)?;
+        self.skip(b'[');
+        self.skip(b']');
+        Some(numbers)
     }
 
     fn list<T>(&mut self, parse: impl Fn(&str) -> Option<T>) -> Result<Vec<T>> {
@@ -188,7 +205,8 @@ mod tests {
 
     #[test]
     fn words_strings_and_numbers() {
-        let mut s = Scanner::new("# first\nShape\"a \\\"b\\\"\" [ 1 -2.5e0 ]#end\n3 true]");
+        let mut text = Text::of("# first\nShape\"a \\\"b\\\"\" [ 1 -2.5e0 ]#end\n3 true]".into());
+        let mut s = Scanner::new(&mut text);
         assert_eq!(s.word(), ("Shape", 8..13));
         assert_eq!(s.string().unwrap(), (Cow::from("a \"b\""), 13..22));
         assert_eq!(s.floats().unwrap(), [1.0, -2.5]);
@@ -203,14 +221,14 @@ mod tests {
         for (text, bytes) in
             [("[1 x]", 3..4), ("[1 nan]", 3..6), ("[1e999]", 1..6), ("[1 2", 4..4), ("[\"a\"]", 1..2)]
         {
-            assert_eq!(Scanner::new(text).floats().unwrap_err().bytes, bytes, "{text}");
+            assert_eq!(Scanner::new(&mut Text::of(text.into())).floats().unwrap_err().bytes, bytes, "{text}");
         }
-        assert!(Scanner::new("[1.5]").integers().is_err());
-        assert!(Scanner::new("[99999999999]").integers().is_err());
-        assert_eq!(Scanner::new("\"a\nb\"").string().unwrap_err().bytes, 0..2);
-        assert!(Scanner::new("\"a\\").string().is_err());
+        assert!(Scanner::new(&mut Text::of("[1.5]".into())).integers().is_err());
+        assert!(Scanner::new(&mut Text::of("[99999999999]".into())).integers().is_err());
+        assert_eq!(Scanner::new(&mut Text::of("\"a\nb\"".into())).string().unwrap_err().bytes, 0..2);
+        assert!(Scanner::new(&mut Text::of("\"a\\".into())).string().is_err());
         let mut three = [0.0; 3];
-        assert!(Scanner::new("[1 2 3 4]").numbers(&mut three).is_err());
-        assert!(Scanner::new("1 2 3 4").numbers(&mut three).is_ok());
+        assert!(Scanner::new(&mut Text::of("[1 2 3 4]".into())).numbers(&mut three).is_err());
+        assert!(Scanner::new(&mut Text::of("1 2 3 4".into())).numbers(&mut three).is_ok());
     }
 }
