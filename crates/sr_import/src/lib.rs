@@ -25,6 +25,7 @@ mod mitsuba;
 mod pbrt;
 mod pfm;
 mod spectra;
+mod support;
 mod values;
 
 use std::borrow::Cow;
@@ -35,6 +36,7 @@ use sr_scene::{Diagnostic, Diagnostics, SceneDesc, Span};
 pub use mitsuba::Origin;
 pub use mitsuba::node::{Child, Node, OtherName, Property, Reference, SpectrumValue, Value};
 pub use mitsuba::plugins;
+pub use mitsuba::plugins::table as mitsuba_support_table;
 pub use pbrt::support_table as pbrt_support_table;
 
 /// How to load a scene file.
@@ -42,7 +44,7 @@ pub use pbrt::support_table as pbrt_support_table;
 pub struct LoadOptions {
     /// Values of `$name` parameters; they override the file's `<default>`s.
     pub defines: Vec<(String, String)>,
-    /// Where files are looked for that are not beside the scene.
+    /// Where files are looked for that are neither beside the scene nor where it says, in this order.
     pub search_paths: Vec<PathBuf>,
 }
 
@@ -98,9 +100,9 @@ fn load_content(
     options: &LoadOptions,
     diagnostics: &mut Diagnostics,
 ) -> Option<SceneDesc> {
-    let directories = std::iter::once(directory).chain(options.search_paths.iter().cloned()).collect();
+    let directories = files::Directories::new(directory, &options.search_paths);
     if format::Format::of_name(name) == format::Format::Gltf {
-        return gltf::load(name, content.into_owned(), directories, diagnostics);
+        return gltf::load(name, content.into_owned(), directories.into_list(), diagnostics);
     }
     // Text that is UTF-8 already is not copied.
     let text = match content {
@@ -111,7 +113,9 @@ fn load_content(
     };
     match format::Format::of_text(name, &text) {
         format::Format::Mitsuba => mitsuba::load(name, &text, directories, &options.defines, diagnostics),
-        format::Format::Pbrt => pbrt::load(name, text, directories, diagnostics),
-        format::Format::Gltf => gltf::load(name, text.into_owned().into_bytes(), directories, diagnostics),
+        format::Format::Pbrt => pbrt::load(name, text, directories.into_list(), diagnostics),
+        format::Format::Gltf => {
+            gltf::load(name, text.into_owned().into_bytes(), directories.into_list(), diagnostics)
+        }
     }
 }
