@@ -1,7 +1,7 @@
 //! The plugins that Mitsuba has, by class, and what becomes of them here: for guesses at misspelt names, for what is
 //! said, and for `docs/import.md`. Files say the class by an element's name, dictionaries do not.
 
-use super::xml::element_names;
+use super::xml::names_without_plugins;
 use crate::support::{self, Known, Support};
 use Support::{Done, Near, Reported};
 
@@ -265,7 +265,7 @@ pub fn all() -> impl Iterator<Item = &'static str> {
 
 /// What becomes of all that Mitsuba has, as a table in Markdown.
 pub fn table() -> String {
-    let elements: Vec<String> = element_names().map(|name| format!("`{name}`")).collect();
+    let elements: Vec<String> = names_without_plugins().map(|name| format!("`{name}`")).collect();
     let elements = format!("| element | {} | done | |", elements.join(", "));
     let of = |named: fn(&str) -> String, list: fn(&Class) -> &'static Known| {
         CLASSES.iter().map(move |class| (named(class.name), list(class)))

@@ -28,7 +28,7 @@ use crate::files::Directories;
 use crate::mitsuba::node::Node;
 use crate::values::shown;
 use elements::Kind;
-pub use elements::names as element_names;
+pub use elements::names_without_plugins;
 use include::Includes;
 use parameters::Parameters;
 
@@ -48,6 +48,7 @@ pub struct XmlScene {
 /// What is known while elements are read; `reader` and `include` have its methods.
 struct Reader<'d> {
     diagnostics: &'d mut Diagnostics,
+    legacy: bool,
     parameters: Parameters,
     directories: Directories,
     includes: Includes,
@@ -79,6 +80,7 @@ pub fn read(
     let mut root = Node::new(tag, "", span);
     let mut reader = Reader {
         diagnostics,
+        legacy,
         parameters: Parameters::new(defines),
         directories,
         includes: Includes::new(name),
