@@ -16,7 +16,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from test_references import SCENES, Comparison, by_blocks, largest_around, mean_differs, read_exr, worst_z, z_limit
+from test_references import (
+    SCENES,
+    Comparison,
+    by_blocks,
+    largest_around,
+    mean_differs,
+    read_exr,
+    worst_z,
+    z_limit,
+)
 
 import steradian as sr
 

@@ -84,7 +84,9 @@ fn pbrts(file: &Path, names: &mut BTreeSet<Name>) {
     let words = words(&text);
     for (at, word) in words.iter().enumerate() {
         let is_directive = word.chars().next().is_some_and(|c| c.is_ascii_uppercase());
-        if !is_directive || ["WorldBegin", "WorldEnd"].contains(&word.as_str()) {
+        // The last three are times of ActiveTransform.
+        if !is_directive || ["WorldBegin", "WorldEnd", "All", "StartTime", "EndTime"].contains(&word.as_str())
+        {
             continue;
         }
         names.insert(("directive".into(), word.clone()));
@@ -190,7 +192,7 @@ fn nine_of_ten_that_real_scenes_use_are_done() {
         let not_done = others.iter().filter(|name| !is_of_media(name)).count();
         let fraction = 1.0 - not_done as f64 / apart.len() as f64;
         let others: Vec<String> = others.iter().map(|(what, name)| format!("{what} {name}")).collect();
-        println!(
+        eprintln!(
             "{format}: of {} names, {done} are done and {near} nearly: {:.1} %, {:.1} % media apart; not {}",
             names.len(),
             100.0 * all,
