@@ -1,9 +1,10 @@
 """Mitsuba's own statistical tests, against Mitsuba's own references.
 
-They are in ``mitsuba-suite/tests`` of the folder that ``test_references`` describes. Each reference is an image and the
-variance of *one sample* of each of its pixels. The number of samples behind it is not stated; it is in the thousands,
-so that, as in Mitsuba's own test, the reference counts as exact. Also as there, a sample's variance is taken as at
-least 1e-4: constant pixels are rounded in the references.
+They are in ``mitsuba-suite/tests`` of the folder that ``test_references`` describes. Each reference is an
+image and the variance of *one sample* of each of its pixels. The number of samples behind it is not stated;
+it is in the thousands, so that, as in Mitsuba's own test, the reference counts as exact. Also as there, a
+sample's variance is taken as at least 1e-4: constant pixels are rounded in the references. The tests are
+those of ``test_references``, with their failure rate.
 
 Left out are the scenes with media, and ``various_shapes``, of which three meshes are not in the suite.
 """
@@ -12,7 +13,6 @@ from __future__ import annotations
 
 import os
 import warnings
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -41,7 +41,7 @@ CASES = {
     "participating_media/test_surf_area_light_volpath": "test_surf_area_light",
 }
 
-# Its references show the white sky as 1.0011, 0.9997, 0.9997: what the spectrum D65 was rounded to when they were made.
+# Its references show the white sky as 1.0011, 0.9997, 0.9997, which Mitsuba 3.9 no longer does.
 WITH_A_ROUNDED_SKY = "orthographic_sensor/test_orthographic_path"
 
 

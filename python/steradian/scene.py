@@ -89,8 +89,8 @@ def load(
             last two optional; v counts from the top row of an image. A bitmap may be given as
             ``{"type": "bitmap", "data": (height, width, 3)}``: uint8 is sRGB-encoded, floats are linear.
         defines: values for the file's ``$name``, over its own defaults.
-        search_paths: folders for files that are neither beside the scene (for a dictionary, in the current folder)
-            nor where it says, in this order.
+        search_paths: folders for files that are neither beside the scene (for a dictionary, in the current
+            folder) nor where it says, in this order.
         threads: threads to decode and compile with; all available cores unless given.
 
     Warns:
