@@ -347,3 +347,16 @@ def test_every_file_of_the_package_has_a_docstring():
     assert len(files) > 10, "no files, no evidence"
     for file in files:
         assert ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))), file
+
+
+def test_files_are_looked_for_in_search_paths(tmp_path):
+    (tmp_path / "meshes").mkdir()
+    (tmp_path / "meshes" / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    (tmp_path / "scene.xml").write_text(
+        '<scene version="3.0.0"><shape type="obj"><string name="filename" value="a.obj"/></shape></scene>'
+    )
+    assert "a.obj" in run("info", "scene.xml", cwd=tmp_path, check=1).stderr
+    found = run("info", "scene.xml", "--search-path", ".", "--search-path", "meshes", cwd=tmp_path, check=0)
+    assert "1 triangles" in found.stdout
+    wrong = run("render", "scene.xml", "--search-path", "mashes", cwd=tmp_path, check=2)
+    assert "'mashes' is not a folder" in wrong.stderr

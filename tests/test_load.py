@@ -143,3 +143,29 @@ def test_a_dictionary_inside_itself_is_an_error(lit_square):
 def test_dictionaries_take_no_defines(lit_square):
     with pytest.raises(ValueError, match="defines"):
         sr.load(lit_square, defines={"spp": 3})
+
+
+SQUARE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
+
+
+def test_files_are_looked_for_in_search_paths(tmp_path, lit_square):
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "elsewhere" / "steradian-test.obj").write_text(SQUARE)
+    file = tmp_path / "scene.xml"
+    file.write_text(
+        '<scene version="3.0.0"><sensor type="orthographic"/><shape type="obj">'
+        '<string name="filename" value="steradian-test.obj"/></shape></scene>'
+    )
+    lit_square["more"] = {"type": "obj", "filename": "steradian-test.obj"}
+    for source, triangles in ((file, 1), (lit_square, 3)):
+        with pytest.raises(sr.SceneError, match="there is no such file"):
+            sr.load(source)
+        scene = sr.load(source, search_paths=[tmp_path, tmp_path / "elsewhere"])
+        assert scene.info()["triangles"] == triangles
+
+
+def test_search_paths_are_folders(tmp_path, cornell_path):
+    with pytest.raises(NotADirectoryError, match="absent is not a folder"):
+        sr.load(cornell_path, search_paths=[tmp_path / "absent"])
+    with pytest.raises(TypeError, match="list of folders"):
+        sr.load(cornell_path, search_paths=str(tmp_path))

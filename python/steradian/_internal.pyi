@@ -77,10 +77,12 @@ class Image:
     def mean_relative_error(self) -> float:
         """Mean standard error over mean, of luminance."""
 
-def load_file(path: str, defines: Sequence[tuple[str, str]], threads: int) -> LoadJob:
+def load_file(
+    path: str, defines: Sequence[tuple[str, str]], search_paths: Sequence[str], threads: int
+) -> LoadJob:
     """Starts to load a file; ``threads`` of 0 are all."""
 
-def load_dict(dict: Mapping[str, Any], threads: int) -> LoadJob:
+def load_dict(dict: Mapping[str, Any], search_paths: Sequence[str], threads: int) -> LoadJob:
     """Starts to load a dictionary."""
 
 def normalize_strategy(expression: str) -> str:

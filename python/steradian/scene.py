@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -75,6 +75,7 @@ def load(
     source: str | os.PathLike[str] | Mapping[str, Any],
     *,
     defines: Mapping[str, Any] | None = None,
+    search_paths: Iterable[str | os.PathLike[str]] = (),
     threads: int | None = None,
 ) -> Scene:
     """Loads a scene.
@@ -88,6 +89,8 @@ def load(
             last two optional; v counts from the top row of an image. A bitmap may be given as
             ``{"type": "bitmap", "data": (height, width, 3)}``: uint8 is sRGB-encoded, floats are linear.
         defines: values for the file's ``$name``, over its own defaults.
+        search_paths: folders for files that are neither beside the scene (for a dictionary, in the current
+            folder) nor where it says, in this order.
         threads: threads to decode and compile with; all available cores unless given.
 
     Warns:
@@ -95,9 +98,10 @@ def load(
 
     Raises:
         SceneError: if there is no scene; the message says why, with file, line and remedy.
+        NotADirectoryError: if one of ``search_paths`` is no folder.
         KeyboardInterrupt: on Ctrl-C, while loading.
     """
-    loaded = load_with_diagnostics(source, defines=defines, threads=threads)
+    loaded = load_with_diagnostics(source, defines=defines, search_paths=search_paths, threads=threads)
     if loaded.scene is None:
         raise SceneError(loaded.report.strip(), loaded.diagnostics)
     for diagnostic in loaded.diagnostics:
@@ -109,19 +113,21 @@ def load_with_diagnostics(
     source: str | os.PathLike[str] | Mapping[str, Any],
     *,
     defines: Mapping[str, Any] | None = None,
+    search_paths: Iterable[str | os.PathLike[str]] = (),
     threads: int | None = None,
     color: bool = False,
 ) -> Loaded:
     """As :func:`load`, but what is wrong is returned; ``color`` adds ANSI escapes to the report."""
     texts = {str(name): _as_text(value) for name, value in (defines or {}).items()}
+    folders = _checked_folders(search_paths)
     if isinstance(source, Mapping):
         name = "<dict>"
         if texts:
             raise ValueError("a dictionary has no $names: put the values in, instead of giving defines")
-        job = _internal.load_dict(dict(source), checked_threads(threads))
+        job = _internal.load_dict(dict(source), folders, checked_threads(threads))
     else:
         name = os.fspath(source)
-        job = _internal.load_file(name, list(texts.items()), checked_threads(threads))
+        job = _internal.load_file(name, list(texts.items()), folders, checked_threads(threads))
     _jobs.wait(job)
     compiled, found, report, seconds = job.result(color)
     diagnostics = tuple(Diagnostic(**fields) for fields in found)
@@ -136,6 +142,17 @@ def checked_threads(threads: int | None) -> int:
     if not 1 <= threads <= _internal.MAX_THREADS:
         raise ValueError(f"threads are 1 to {_internal.MAX_THREADS}, not {threads}")
     return int(threads)
+
+
+def _checked_folders(search_paths: Iterable[str | os.PathLike[str]]) -> list[str]:
+    """The folders' names; a name by itself is not a list of names."""
+    if isinstance(search_paths, str | os.PathLike):
+        raise TypeError(f"search_paths is a list of folders: [{os.fspath(search_paths)!r}]")
+    folders = [os.fspath(path) for path in search_paths]
+    for folder in folders:
+        if not os.path.isdir(folder):
+            raise NotADirectoryError(f"{folder} is not a folder to look for files in")
+    return folders
 
 
 def _as_text(value: Any) -> str:

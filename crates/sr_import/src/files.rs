@@ -95,6 +95,39 @@ pub fn reason(error: &std::io::Error) -> String {
     }
 }
 
+/// Where files are looked for: beside the scene and where it says, then where the user says.
+#[derive(Clone, Debug, Default)]
+pub struct Directories {
+    list: Vec<PathBuf>,
+    /// How many of them are the scene's; the others are the user's.
+    scene: usize,
+}
+
+impl Directories {
+    /// The scene's own directory, and the user's.
+    pub fn new(own: PathBuf, search_paths: &[PathBuf]) -> Self {
+        Self { list: std::iter::once(own).chain(search_paths.iter().cloned()).collect(), scene: 1 }
+    }
+
+    /// Adds one of the scene's, unless it is one of them: after its others, before the user's.
+    pub fn add(&mut self, directory: PathBuf) {
+        if !self.list.iter().take(self.scene).any(|known| *known == directory) {
+            self.list.insert(self.scene, directory);
+            self.scene += 1;
+        }
+    }
+
+    /// Where a file is: [`find`].
+    pub fn find(&self, name: &str) -> PathBuf {
+        find(name, &self.list)
+    }
+
+    /// All of them, in the order of looking.
+    pub fn into_list(self) -> Vec<PathBuf> {
+        self.list
+    }
+}
+
 /// The first directory's `name` that exists, or the first candidate if none does.
 pub fn find(name: &str, directories: &[PathBuf]) -> PathBuf {
     let path = Path::new(name);

@@ -25,6 +25,7 @@ mod mitsuba;
 mod pbrt;
 mod pfm;
 mod spectra;
+mod support;
 mod values;
 
 use std::borrow::Cow;
@@ -35,6 +36,7 @@ use sr_scene::{Diagnostic, Diagnostics, SceneDesc, Span};
 pub use mitsuba::Origin;
 pub use mitsuba::node::{Child, Node, OtherName, Property, Reference, SpectrumValue, Value};
 pub use mitsuba::plugins;
+pub use mitsuba::plugins::table as mitsuba_support_table;
 pub use pbrt::support_table as pbrt_support_table;
 
 /// How to load a scene file.
@@ -42,7 +44,7 @@ pub use pbrt::support_table as pbrt_support_table;
 pub struct LoadOptions {
     /// Values of `$name` parameters; they override the file's `<default>`s.
     pub defines: Vec<(String, String)>,
-    /// Where files are looked for that are not beside the scene.
+    /// Where files are looked for that are neither beside the scene nor where it says, in this order.
     pub search_paths: Vec<PathBuf>,
 }
 
@@ -55,17 +57,15 @@ pub fn load(path: &Path, options: &LoadOptions) -> (Option<SceneDesc>, Diagnosti
         return (scene, diagnostics);
     }
     let directory = path.parent().unwrap_or(Path::new("")).to_owned();
-    let directories =
-        || std::iter::once(directory.clone()).chain(options.search_paths.iter().cloned()).collect();
+    let directories = files::Directories::new(directory, &options.search_paths);
     let loaded = match format::Format::of_name(&name) {
-        format::Format::Pbrt => {
-            pbrt::Text::read(path).map(|text| pbrt::load(&name, text, directories(), &mut diagnostics))
-        }
+        format::Format::Pbrt => pbrt::Text::read(path)
+            .map(|text| pbrt::load(&name, text, directories.into_list(), &mut diagnostics)),
         format::Format::Mitsuba => files::read_text(path).map(|text| {
-            load_content(&name, text.into_bytes().into(), directories(), options, &mut diagnostics)
+            load_content(&name, text.into_bytes().into(), directories, options, &mut diagnostics)
         }),
         format::Format::Gltf => files::read(path, files::MAX_FILE_BYTES)
-            .map(|bytes| gltf::load(&name, bytes, directories(), &mut diagnostics)),
+            .map(|bytes| gltf::load(&name, bytes, directories.into_list(), &mut diagnostics)),
     };
     match loaded {
         Ok(scene) => (scene, diagnostics),
@@ -86,8 +86,8 @@ pub fn load_str(
     options: &LoadOptions,
 ) -> (Option<SceneDesc>, Diagnostics) {
     let mut diagnostics = Diagnostics::default();
-    let directories = std::iter::once(directory.to_owned()).chain(options.search_paths.iter().cloned());
-    let scene = load_content(name, text.as_bytes().into(), directories.collect(), options, &mut diagnostics);
+    let directories = files::Directories::new(directory.to_owned(), &options.search_paths);
+    let scene = load_content(name, text.as_bytes().into(), directories, options, &mut diagnostics);
     (scene, diagnostics)
 }
 
@@ -104,12 +104,12 @@ pub fn gltf_extensions() -> Vec<(&'static str, String)> {
 fn load_content(
     name: &str,
     content: Cow<'_, [u8]>,
-    directories: Vec<PathBuf>,
+    directories: files::Directories,
     options: &LoadOptions,
     diagnostics: &mut Diagnostics,
 ) -> Option<SceneDesc> {
     if format::Format::of_name(name) == format::Format::Gltf {
-        return gltf::load(name, content.into_owned(), directories, diagnostics);
+        return gltf::load(name, content.into_owned(), directories.into_list(), diagnostics);
     }
     // Text that is UTF-8 already is not copied.
     let text = match content {
@@ -120,7 +120,12 @@ fn load_content(
     };
     match format::Format::of_text(name, &text) {
         format::Format::Mitsuba => mitsuba::load(name, &text, directories, &options.defines, diagnostics),
-        format::Format::Pbrt => pbrt::load(name, pbrt::Text::of(text.into_owned()), directories, diagnostics),
-        format::Format::Gltf => gltf::load(name, text.into_owned().into_bytes(), directories, diagnostics),
+        format::Format::Pbrt => {
+            let text = pbrt::Text::of(text.into_owned());
+            pbrt::load(name, text, directories.into_list(), diagnostics)
+        }
+        format::Format::Gltf => {
+            gltf::load(name, text.into_owned().into_bytes(), directories.into_list(), diagnostics)
+        }
     }
 }

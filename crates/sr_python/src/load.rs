@@ -47,21 +47,27 @@ impl LoadJob {
 
 /// Starts to load a file; `defines` override the file's own defaults; `threads` of 0 are all.
 #[pyfunction]
-pub fn load_file(path: PathBuf, defines: Vec<(String, String)>, threads: usize) -> PyResult<LoadJob> {
+pub fn load_file(
+    path: PathBuf,
+    defines: Vec<(String, String)>,
+    search_paths: Vec<PathBuf>,
+    threads: usize,
+) -> PyResult<LoadJob> {
     let job = Job::start(threads, move || {
         let start = Instant::now();
-        let (desc, diagnostics) = sr_import::load(&path, &LoadOptions { defines, ..LoadOptions::default() });
+        let (desc, diagnostics) = sr_import::load(&path, &LoadOptions { defines, search_paths });
         Ok(compiled(desc, diagnostics, start))
     })?;
     Ok(LoadJob(job))
 }
 
-/// Starts to load a dictionary; files that it names are looked for in the current folder.
+/// Starts to load a dictionary; files that it names are looked for in the current folder, then in `search_paths`.
 #[pyfunction]
-pub fn load_dict(dict: &Bound<'_, PyDict>, threads: usize) -> PyResult<LoadJob> {
+pub fn load_dict(dict: &Bound<'_, PyDict>, search_paths: Vec<PathBuf>, threads: usize) -> PyResult<LoadJob> {
     let start = Instant::now();
     let (node, mut diagnostics) = node::from_dict(dict)?;
-    let origin = Origin { legacy: false, directories: vec![PathBuf::new()] };
+    let directories = std::iter::once(PathBuf::new()).chain(search_paths).collect();
+    let origin = Origin { legacy: false, directories };
     let job = Job::start(threads, move || {
         let desc = match diagnostics.has_errors() {
             true => None,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import os
 from collections.abc import Callable, Sequence
 from typing import NoReturn
 
@@ -18,6 +19,7 @@ examples:
   steradian render scene.xml --time 60 --size 640x360            as good as a minute allows
   steradian render scene.xml --strategy "0.5 cosine + 0.5 light"
   steradian render scene.xml --strategy "mis(bsdf, light, heuristic=balance)" --json
+  steradian render scene.xml -D res=64 --search-path ../textures   what it names and lacks
   steradian info scene.xml
   steradian article --open                                       learn how it works
   steradian verify                                               check every building block
@@ -226,6 +228,14 @@ def _add_scene(parser: argparse.ArgumentParser) -> None:
         type=_definition,
         help="a value for $NAME in the scene file; may be repeated",
     )
+    parser.add_argument(
+        "--search-path",
+        metavar="DIR",
+        action="append",
+        default=[],
+        type=_folder,
+        help="where to look for files that are neither beside the scene nor where it says; may be repeated",
+    )
 
 
 def _integer(low: int, high: int) -> Callable[[str], int]:
@@ -293,6 +303,12 @@ def _checked(convert: Callable[[], str]) -> str:
         return convert()
     except ValueError as error:
         raise argparse.ArgumentTypeError(str(error)) from None
+
+
+def _folder(text: str) -> str:
+    if not os.path.isdir(text):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a folder")
+    return text
 
 
 def _definition(text: str) -> tuple[str, str]:

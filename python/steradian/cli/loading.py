@@ -14,6 +14,7 @@ def load(arguments: argparse.Namespace) -> Scene | None:
     loaded = load_with_diagnostics(
         arguments.scene,
         defines=dict(arguments.define),
+        search_paths=arguments.search_path,
         threads=getattr(arguments, "threads", None),
         color=sys.stderr.isatty() and not os.environ.get("NO_COLOR"),
     )

@@ -12,21 +12,20 @@ mod tables;
 mod transform;
 mod xml;
 
-use std::path::PathBuf;
-
 use sr_scene::{Diagnostics, SceneDesc};
 
+use crate::files::Directories;
 pub use lower::{Origin, lower};
 
 /// Loads a scene from text. Files are looked for in `directories`; `defines` override the text's `<default>`s.
 pub fn load(
     name: &str,
     text: &str,
-    directories: Vec<PathBuf>,
+    directories: Directories,
     defines: &[(String, String)],
     diagnostics: &mut Diagnostics,
 ) -> Option<SceneDesc> {
     let scene = xml::read(name, text, directories, defines, diagnostics)?;
-    let origin = Origin { legacy: scene.legacy, directories: scene.directories };
+    let origin = Origin { legacy: scene.legacy, directories: scene.directories.into_list() };
     lower(&scene.root, &origin, diagnostics)
 }

@@ -3,23 +3,11 @@
 
 use sr_scene::{Diagnostic, Span};
 
+use crate::support::{self, consequence};
 use crate::values::shown;
 
-/// What becomes of a thing.
-#[derive(Clone, Copy, Debug)]
-pub enum Support {
-    /// What pbrt shows.
-    Done,
-    /// Nearly what pbrt shows: how it differs.
-    Near(&'static str),
-    /// It is said that it is not done, and this.
-    Reported(&'static str),
-}
-
+pub use crate::support::{Known, Support, names};
 use Support::{Done, Near, Reported};
-
-/// Names of one kind.
-pub type Known = [(&'static str, Support)];
 
 pub const DIRECTIVES: &Known = &[
     ("Accelerator", Done),
@@ -152,11 +140,6 @@ pub const INTEGRATORS: &Known = &[
     ("function", Reported("paths are traced")),
 ];
 
-/// The names of a list.
-pub fn names(list: &'static Known) -> impl Iterator<Item = &'static str> {
-    list.iter().map(|(name, _)| *name)
-}
-
 /// What is said of `what` of a kind that is not done, or not known: then `unknown` happens.
 pub fn unsupported(
     list: &'static Known,
@@ -166,13 +149,9 @@ pub fn unsupported(
     kind: &str,
     unknown: &str,
 ) -> Diagnostic {
-    let consequence = list.iter().find_map(|&(name, support)| match support {
-        Reported(consequence) if name == kind => Some(consequence),
-        _ => None,
-    });
     Diagnostic::warning(code, span, format!("{what} \"{}\" is not supported", shown(kind)))
         .guess(kind, names(list))
-        .consequence(consequence.unwrap_or(unknown))
+        .consequence(consequence(list, kind).unwrap_or(unknown))
 }
 
 /// All lists, and what they are of.
@@ -190,21 +169,5 @@ const LISTS: [(&str, &Known); 9] = [
 
 /// What becomes of all that pbrt-v4 has, as a table in Markdown.
 pub fn table() -> String {
-    let mut lines =
-        vec!["| what | name | here | how it differs |".to_owned(), "| --- | --- | --- | --- |".to_owned()];
-    for (what, list) in LISTS {
-        let done: Vec<String> =
-            list.iter().filter(|(_, s)| matches!(s, Done)).map(|(name, _)| format!("`{name}`")).collect();
-        if !done.is_empty() {
-            lines.push(format!("| {what} | {} | done | |", done.join(", ")));
-        }
-        for (name, support) in list {
-            match support {
-                Done => {}
-                Near(how) => lines.push(format!("| {what} | `{name}` | approximated | {how} |")),
-                Reported(how) => lines.push(format!("| {what} | `{name}` | reported | {how} |")),
-            }
-        }
-    }
-    lines.join("\n")
+    support::table(LISTS.map(|(what, list)| (what.to_owned(), list)))
 }

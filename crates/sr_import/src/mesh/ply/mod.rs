@@ -180,15 +180,17 @@ impl Columns {
 
 fn has_colors(element: &ElementDef) -> bool {
     let has = |name: &str| element.properties.contains_key(name);
-    (has("r") && has("g") && has("b")) || (has("red") && has("green") && has("blue"))
+    // The last are Mitsuba's own.
+    let triples = [["r", "g", "b"], ["red", "green", "blue"], ["color_0", "color_1", "color_2"]];
+    triples.iter().any(|triple| triple.iter().all(|name| has(name)))
 }
 
 /// Which part of a color a property is.
 fn color_slot(name: &str) -> Option<usize> {
     Some(match name {
-        "r" | "red" => 0,
-        "g" | "green" => 1,
-        "b" | "blue" => 2,
+        "r" | "red" | "color_0" => 0,
+        "g" | "green" | "color_1" => 1,
+        "b" | "blue" | "color_2" => 2,
         _ => return None,
     })
 }

@@ -7,6 +7,7 @@ use sr_scene::{Crop, Diagnostic, FilmDesc, FilterDesc, MAX_FILM_PIXELS};
 use super::Lowering;
 use crate::assembly::default_film;
 use crate::mitsuba::node::Node;
+use crate::mitsuba::plugins;
 use crate::mitsuba::props::Props;
 
 /// Mitsuba's default filter, cut at four standard deviations.
@@ -17,7 +18,8 @@ impl<'a> Lowering<'a, '_> {
         let mut film = default_film();
         let [node, ..] = self.nested(props, "film")[..] else { return film };
         let mut props = Props::new(node);
-        if !matches!(node.kind.as_str(), "hdrfilm" | "ldrfilm") {
+        let is_read = plugins::is_read("film", &node.kind);
+        if !is_read {
             self.unknown_plugin(node, "its size and filter are used, the rest is ignored");
         }
         film.width = self.count(&mut props, node, "width", film.width);
@@ -52,7 +54,7 @@ impl<'a> Lowering<'a, '_> {
                 );
             }
         }
-        if !matches!(node.kind.as_str(), "hdrfilm" | "ldrfilm") {
+        if !is_read {
             props.use_all();
         }
         props.finish(self.out.d);

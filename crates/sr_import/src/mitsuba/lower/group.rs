@@ -49,6 +49,11 @@ impl<'a> Lowering<'a, '_> {
                 }
                 // Shown where an instance asks for it.
                 "shapegroup" => {}
+                "merge" => {
+                    for shape in self.merged(child) {
+                        self.shape_in_group(index, shape);
+                    }
+                }
                 _ => self.shape_in_group(index, child),
             }
         }

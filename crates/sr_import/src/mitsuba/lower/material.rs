@@ -91,6 +91,8 @@ impl<'a> Lowering<'a, '_> {
                 nonlinear: props.boolean("nonlinear", self.out.d).unwrap_or(false),
                 multiscatter: self.multiscatter(props),
             },
+            "pplastic" => self.polarizing_plastic(node, props),
+            "polarizer" | "circular" | "retarder" => self.polarizing_filter(node, props),
             "coateddiffuse" => self.coated_diffuse(props),
             "coatedconductor" => self.coated_conductor(props),
             "eon" => MaterialDesc::Eon {
@@ -202,7 +204,7 @@ impl<'a> Lowering<'a, '_> {
         if let [inner, ..] = self.nested(props, "bsdf")[..] {
             let id = self.material(inner);
             props.use_all();
-            self.unknown_plugin(node, &format!("its first nested {} is shown instead", inner.title()));
+            self.unsupported_plugin(node, &format!("its first nested {} is shown instead", inner.title()));
             return Lowered::Same(id);
         }
         const COLORS: [&str; 3] = ["base_color", "diffuse_reflectance", "reflectance"];
@@ -218,7 +220,7 @@ impl<'a> Lowering<'a, '_> {
                 ColorInput::Constant(GREY),
             ),
         };
-        self.unknown_plugin(node, &consequence);
+        self.unsupported_plugin(node, &consequence);
         let side = self.out.add_material(MaterialDesc::Diffuse { reflectance }, &node.span);
         Lowered::New(MaterialDesc::TwoSided { front: side, back: side })
     }

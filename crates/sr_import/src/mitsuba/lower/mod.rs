@@ -9,6 +9,7 @@ mod emitter;
 mod film;
 mod group;
 mod material;
+mod polarization;
 mod principled;
 mod sensor;
 mod settings;
@@ -25,6 +26,7 @@ use crate::assembly::Assembly;
 use crate::mitsuba::node::{Child, Node};
 use crate::mitsuba::plugins;
 use crate::mitsuba::props::Props;
+use crate::support::Support;
 use crate::values::shown;
 
 /// What a tree needs to be understood.
@@ -54,6 +56,8 @@ struct Lowering<'a, 'd> {
     materials_done: HashMap<usize, MaterialId>,
     textures_done: HashMap<usize, sr_scene::ColorInput>,
     groups_done: HashMap<usize, u32>,
+    /// What references mean, by address.
+    referred: HashSet<usize>,
     /// Per group, what is placed inside it.
     inner_groups: Vec<Vec<group::Inner>>,
     /// Instances so far, those inside groups counted wherever their group is shown.
@@ -76,6 +80,7 @@ impl<'a, 'd> Lowering<'a, 'd> {
             materials_done: HashMap::new(),
             textures_done: HashMap::new(),
             groups_done: HashMap::new(),
+            referred: HashSet::new(),
             inner_groups: Vec::new(),
             placements: 0,
             open: HashSet::new(),
@@ -121,6 +126,7 @@ impl<'a, 'd> Lowering<'a, 'd> {
             Child::Reference(reference) => reference,
         };
         let found = self.ids.get(reference.id.as_str()).copied();
+        self.referred.extend(found.map(key));
         if found.is_none() {
             let message = format!("there is no object with the id \"{}\"", shown(&reference.id));
             self.out.d.push(
@@ -144,6 +150,7 @@ impl<'a, 'd> Lowering<'a, 'd> {
         let mut props = Props::new(root);
         let mut sensors = Vec::new();
         let mut integrators = Vec::new();
+        let mut areas = Vec::new();
         for child in props.take_children(|_| true) {
             let node = match child {
                 Child::Node(node) => node,
@@ -166,6 +173,8 @@ impl<'a, 'd> Lowering<'a, 'd> {
                 // Used where they are referred to.
                 "texture" | "spectrum" | "medium" | "phase" | "volume" | "film" | "sampler" | "rfilter" => {}
                 "shape" => self.top_level_shape(node),
+                // Of a shape that refers to it: known when all shapes are read.
+                "emitter" if node.kind == "area" => areas.push(node),
                 "emitter" => self.emitter(node),
                 "sensor" => sensors.push(node),
                 "integrator" => integrators.push(node),
@@ -179,6 +188,13 @@ impl<'a, 'd> Lowering<'a, 'd> {
             }
         }
         props.finish(self.out.d);
+        for area in areas.into_iter().filter(|area| !self.referred.contains(&key(area))) {
+            let message = "an area emitter that no shape refers to";
+            self.out.d.push(
+                Diagnostic::warning("mitsuba::unused-child", &area.span, message)
+                    .consequence("it lights nothing"),
+            );
+        }
         self.integrators(&integrators);
         self.sensors(&sensors);
         self.report_media(root);
@@ -206,15 +222,24 @@ impl<'a, 'd> Lowering<'a, 'd> {
         );
     }
 
-    /// Reports a plugin that does not exist or is not supported.
+    /// Reports a plugin that does not exist or is not supported; `consequence` is for those that do not exist.
     fn unknown_plugin(&mut self, node: &Node, consequence: &str) {
+        let consequence = match plugins::support(&node.class, &node.kind) {
+            Some(Support::Reported(consequence)) => consequence,
+            _ => consequence,
+        };
+        self.unsupported_plugin(node, consequence);
+    }
+
+    /// Reports a plugin instead of which something happens that depends on what is in it.
+    fn unsupported_plugin(&mut self, node: &Node, consequence: &str) {
         self.out.d.push(
             Diagnostic::warning(
                 "mitsuba::unsupported-plugin",
                 &node.span,
                 format!("{} is not supported", node.title()),
             )
-            .guess(&node.kind, plugins::of(&node.class).iter().copied())
+            .guess(&node.kind, plugins::of(&node.class))
             .consequence(consequence),
         );
     }

@@ -27,7 +27,7 @@ impl<'a> Lowering<'a, '_> {
 
     fn sensor(&mut self, node: &'a Node) {
         let mut props = Props::new(node);
-        let known = plugins::of("sensor").contains(&node.kind.as_str());
+        let known = plugins::is_read("sensor", &node.kind);
         if !known {
             self.unknown_plugin(node, "a perspective camera at the same place is used");
         }

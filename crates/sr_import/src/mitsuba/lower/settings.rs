@@ -4,6 +4,7 @@ use sr_scene::{Diagnostic, Settings};
 
 use super::Lowering;
 use crate::mitsuba::node::Node;
+use crate::mitsuba::plugins;
 use crate::mitsuba::props::Props;
 
 impl<'a> Lowering<'a, '_> {
@@ -35,38 +36,32 @@ impl<'a> Lowering<'a, '_> {
                 props.ignore(&["emitter_samples", "bsdf_samples", "shading_samples", "strict_normals"]);
             }
             // These wrap another integrator and add outputs.
-            "moment" | "aov" if !self.nested_kinds(node).is_empty() => {
+            "moment" | "aov" | "stokes" => {
                 let nested = self.nested(&mut props, "integrator");
                 props.use_all();
-                let used = nested.first().map(|n| n.title()).unwrap_or_default();
-                self.unknown_plugin(node, &format!("its nested {used} is used, without further outputs"));
+                let used = nested.first().map_or("the integrator \"path\"".into(), |inner| inner.title());
+                let message = format!("the further outputs of {} are not made", node.title());
+                self.out.d.push(
+                    Diagnostic::warning("mitsuba::unsupported-output", &node.span, message)
+                        .consequence(format!("the image of {used} is, with its errors")),
+                );
                 if let Some(inner) = nested.first() {
                     self.integrator(inner);
                 }
             }
             kind => {
-                if kind != "path" {
-                    self.unknown_plugin(node, "the integrator \"path\" is used");
-                    props.get("max_depth");
-                }
                 self.depths(&mut props, node);
                 props.ignore(&["strict_normals", "samples_per_pass", "block_size", "timeout"]);
+                if !plugins::is_read("integrator", kind) {
+                    self.unknown_plugin(node, "the integrator \"path\" is used");
+                }
+                // What others have besides is about how they sample.
                 if kind != "path" {
                     props.use_all();
                 }
             }
         }
         props.finish(self.out.d);
-    }
-
-    fn nested_kinds(&self, node: &'a Node) -> Vec<&'a str> {
-        let nested = node.children.iter().filter_map(|child| match child {
-            crate::mitsuba::node::Child::Node(inner) if inner.class == "integrator" => {
-                Some(inner.kind.as_str())
-            }
-            _ => None,
-        });
-        nested.collect()
     }
 
     fn depths(&mut self, props: &mut Props<'a>, node: &Node) {
@@ -97,6 +92,9 @@ impl<'a> Lowering<'a, '_> {
 
     /// A sensor's sampler: only how many samples it takes matters here.
     pub(super) fn sampler(&mut self, node: &'a Node) {
+        if !plugins::is_read("sampler", &node.kind) {
+            self.unknown_plugin(node, "its number of samples is used");
+        }
         let mut props = Props::new(node);
         if let Some(count) = props.integer("sample_count", self.out.d) {
             match u32::try_from(count) {

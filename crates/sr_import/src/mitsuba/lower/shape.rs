@@ -1,12 +1,13 @@
 //! Shapes: what they are made of, what they emit, and where their meshes come from.
 
+use std::collections::HashSet;
 use std::sync::Arc;
 
 use sr_scene::{Diagnostic, Emission, Geometry, Rgb, ShapeDesc};
 
-use super::Lowering;
 use super::color::Role;
 use super::material::{GREY, diffuse};
+use super::{Lowering, key};
 use crate::assembly::MeshSource;
 use crate::mesh::{Convention, Format, Placement, Scheme, Subdivision, primitives};
 use crate::mitsuba::node::{Node, Value};
@@ -27,12 +28,35 @@ impl<'a> Lowering<'a, '_> {
                 self.group(node);
             }
             "instance" => self.instance(node),
+            "merge" => {
+                for shape in self.merged(node) {
+                    self.top_level_shape(shape);
+                }
+            }
             _ => {
                 if let Some((shape, pending)) = self.shape(node) {
                     self.out.add_shape(shape, pending);
                 }
             }
         }
+    }
+
+    /// The shapes inside a `merge`, and inside those inside it.
+    pub(super) fn merged(&mut self, node: &'a Node) -> Vec<&'a Node> {
+        let mut shapes = Vec::new();
+        let mut open = vec![node];
+        // Each is gone through once: one that contains itself ends.
+        let mut seen = HashSet::new();
+        while let Some(node) = open.pop() {
+            if node.kind != "merge" {
+                shapes.push(node);
+            } else if seen.insert(key(node)) {
+                let mut props = Props::new(node);
+                open.extend(self.nested(&mut props, "shape").into_iter().rev());
+                props.finish(self.out.d);
+            }
+        }
+        shapes
     }
 
     pub(super) fn shape(&mut self, node: &'a Node) -> Option<(ShapeDesc, Option<(MeshSource, Placement)>)> {

@@ -69,6 +69,13 @@ impl<'a> Lowering<'a, '_> {
     pub(super) fn sunsky(&mut self, node: &'a Node, props: &mut Props<'a>) -> Vec<LightDesc> {
         let to_world = props.transform("to_world", self.out.d);
         let Some(world_from_light) = self.rotation_of(to_world, "a sky", node) else { return Vec::new() };
+        if self.origin.legacy {
+            let message = format!("{} of Mitsuba 0.6, where up is +Y", node.title());
+            self.out.d.push(
+                Diagnostic::warning("mitsuba::sky-axis", &node.span, message)
+                    .consequence("up is +Z, as Mitsuba 3 reads it, turned by \"to_world\""),
+            );
+        }
         let turbidity = props.float("turbidity", self.out.d).unwrap_or(3.0);
         let albedo = self.constant_color(props, "albedo", Rgb::splat(0.3), Role::Factor);
         let given = props.vector("sun_direction", self.out.d);

@@ -6,7 +6,7 @@ use sr_scene::{ColorInput, Diagnostic, Filter, MeshColorOf, Rgb, Span, TextureDe
 use super::color::Role;
 use super::{Lowering, key};
 use crate::images::Decode;
-use crate::mitsuba::node::{Node, SpectrumValue, Value};
+use crate::mitsuba::node::{Node, Property, SpectrumValue, Value};
 use crate::mitsuba::props::{Props, finite_color};
 use crate::values;
 
@@ -76,6 +76,13 @@ impl<'a> Lowering<'a, '_> {
             }
             "mesh_attribute" => self.mesh_attribute(node, props),
             "uniform" | "constant" => self.color(props, "value", Rgb::ONE, role),
+            "rawconstant" => match props.get("value") {
+                Some(Property { value: Value::Vector(v), span, .. }) => {
+                    let color = finite_color(*v, "value", span, self.out.d);
+                    ColorInput::Constant(color.unwrap_or(STAND_IN))
+                }
+                _ => self.color(props, "value", Rgb::ONE, role),
+            },
             "rgb" | "srgb" => {
                 let name = if props.has("color") { "color" } else { "value" };
                 self.color(props, name, STAND_IN, role)

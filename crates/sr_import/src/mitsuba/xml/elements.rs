@@ -90,3 +90,8 @@ pub fn kind(tag: &str) -> Option<Kind> {
 pub fn names() -> impl Iterator<Item = &'static str> {
     ELEMENTS.iter().map(|&(name, _)| name)
 }
+
+/// Those that are no objects, whose plugins say what becomes of them.
+pub fn names_without_plugins() -> impl Iterator<Item = &'static str> {
+    ELEMENTS.iter().filter(|(_, kind)| *kind != Kind::Object).map(|&(name, _)| name)
+}

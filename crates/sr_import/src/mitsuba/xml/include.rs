@@ -1,6 +1,6 @@
 //! `<include>` and `<path>`: other files, and where they are.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use sr_scene::{Diagnostic, Span};
 
@@ -37,7 +37,7 @@ impl Reader<'_> {
         node: &mut Node,
         depth: usize,
     ) -> Result<(), String> {
-        let path = files::find(attributes.required("filename")?, &self.directories);
+        let path = self.directories.find(attributes.required("filename")?);
         self.includes.count += 1;
         if self.includes.open.contains(&path) {
             return Err(format!("{} includes itself", path.display()));
@@ -57,10 +57,8 @@ impl Reader<'_> {
                 return Ok(());
             }
         };
-        if let Some(parent) = path.parent().map(Path::to_owned)
-            && !self.directories.contains(&parent)
-        {
-            self.directories.push(parent);
+        if let Some(parent) = path.parent() {
+            self.directories.add(parent.to_owned());
         }
         self.includes.open.push(path);
         let root = document.root_element();
@@ -76,9 +74,9 @@ impl Reader<'_> {
     /// Adds a directory to look for files in.
     pub(super) fn path(&mut self, attributes: &mut Attributes<'_, '_>, span: &Span) -> Result<(), String> {
         let name = attributes.required("value")?;
-        let directory = files::find(name, &self.directories);
+        let directory = self.directories.find(name);
         if directory.is_dir() {
-            self.directories.push(directory);
+            self.directories.add(directory);
         } else {
             let message = format!("\"{}\" is not a directory", shown(name));
             self.diagnostics.push(

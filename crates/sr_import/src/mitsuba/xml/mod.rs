@@ -21,13 +21,14 @@ mod syntax;
 mod value;
 
 use std::collections::HashMap;
-use std::path::PathBuf;
 
 use sr_scene::{Diagnostic, Diagnostics, Span};
 
+use crate::files::Directories;
 use crate::mitsuba::node::Node;
 use crate::values::shown;
 use elements::Kind;
+pub use elements::names_without_plugins;
 use include::Includes;
 use parameters::Parameters;
 
@@ -41,14 +42,15 @@ pub struct XmlScene {
     /// Was it written for Mitsuba 0.5 or 0.6?
     pub legacy: bool,
     /// Where the files it names are looked for.
-    pub directories: Vec<PathBuf>,
+    pub directories: Directories,
 }
 
 /// What is known while elements are read; `reader` and `include` have its methods.
 struct Reader<'d> {
     diagnostics: &'d mut Diagnostics,
+    legacy: bool,
     parameters: Parameters,
-    directories: Vec<PathBuf>,
+    directories: Directories,
     includes: Includes,
     aliases: Vec<alias::Alias>,
     /// For each object that is being read, the outermost first: where its properties are, by canonical name.
@@ -59,7 +61,7 @@ struct Reader<'d> {
 pub fn read(
     name: &str,
     text: &str,
-    directories: Vec<PathBuf>,
+    directories: Directories,
     defines: &[(String, String)],
     diagnostics: &mut Diagnostics,
 ) -> Option<XmlScene> {
@@ -78,6 +80,7 @@ pub fn read(
     let mut root = Node::new(tag, "", span);
     let mut reader = Reader {
         diagnostics,
+        legacy,
         parameters: Parameters::new(defines),
         directories,
         includes: Includes::new(name),

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
-use glam::DMat4;
+use glam::{DMat4, DVec3};
 use roxmltree::Node as Element;
 use sr_scene::{Diagnostic, SourceId, Span};
 
@@ -178,7 +178,12 @@ impl Reader<'_> {
         for child in element.children().filter(Element::is_element) {
             let mut attributes = self.attributes(source, child);
             match transform::step(child, &mut attributes) {
-                Ok(step) => total = step * total,
+                Ok(step) => {
+                    total = step * total;
+                    if !self.legacy {
+                        self.check_axis(child, &mut attributes, source);
+                    }
+                }
                 Err(message) => {
                     let span = start_tag(source, child);
                     self.diagnostics.push(Diagnostic::error("mitsuba::bad-transform", &span, message));
@@ -187,6 +192,19 @@ impl Reader<'_> {
         }
         self.property(node, Property { name, value: Value::Transform(total), span: span.clone() });
         Ok(())
+    }
+
+    /// Mitsuba 3 takes the axis of a rotation as it is, 0.6 as a direction.
+    fn check_axis(&mut self, step: Element<'_, '_>, attributes: &mut Attributes<'_, '_>, source: SourceId) {
+        let axis = (step.tag_name().name() == "rotate").then(|| attributes.vector(0.0));
+        let Some(length) = axis.and_then(Result::ok).map(DVec3::length) else { return };
+        if (length - 1.0).abs() > 1e-3 {
+            let message = format!("the axis of a rotation has the length {length:.3}, not 1");
+            self.diagnostics.push(
+                Diagnostic::warning("mitsuba::rotation-axis", &start_tag(source, step), message)
+                    .consequence("only its direction counts; Mitsuba 3 distorts what it turns"),
+            );
+        }
     }
 
     fn default(&mut self, attributes: &mut Attributes<'_, '_>) -> Result<(), String> {
