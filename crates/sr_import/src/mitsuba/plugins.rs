@@ -51,7 +51,7 @@ const CLASSES: &[Class] = &[
             ("bumpmap", Done),
             ("normalmap", Done),
             ("null", Done),
-            ("pplastic", Near("as roughplastic, which is 6 % brighter; nothing is polarized")),
+            ("pplastic", Near("as roughplastic, which is 6 to 9 % brighter; nothing is polarized")),
             ("polarizer", ATTENUATES),
             ("circular", ATTENUATES),
             ("retarder", Near("all light passes: nothing is polarized")),

@@ -10,7 +10,7 @@ use crate::mitsuba::props::Props;
 impl<'a> Lowering<'a, '_> {
     /// A rough plastic; Mitsuba's has no light that bounces inside it, and is darker by it.
     pub(super) fn polarizing_plastic(&mut self, node: &'a Node, props: &mut Props<'a>) -> MaterialDesc {
-        self.unpolarized(node, "a roughplastic is shown instead, which is 6 % brighter");
+        self.unpolarized(node, "a roughplastic is shown instead, which is 6 to 9 % brighter");
         let kind = self.distribution(props);
         let names = if props.has("alpha_u") { ["alpha_u", "alpha_v"] } else { ["alpha"; 2] };
         let [alpha_u, alpha_v] = names.map(|name| self.constant_alpha(props, name, 0.1));

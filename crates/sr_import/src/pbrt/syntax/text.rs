@@ -8,10 +8,14 @@ use std::collections::HashMap;
 use std::io::Read;
 use std::path::Path;
 
+use rayon::prelude::*;
+
 use crate::files::{self, Content};
 
 /// Bytes that are looked at together.
-const BLOCK: usize = 1 << 20;
+const BLOCK: usize = 1 << 22;
+/// Bytes of numbers that are read one after another.
+const PIECE: usize = 1 << 16;
 /// No number has more bytes.
 const LONGEST_NUMBER: usize = 64;
 
@@ -33,6 +37,43 @@ pub enum Numbers {
     Integers(Vec<i32>),
     /// Of others.
     Floats(Vec<f32>),
+}
+
+impl Numbers {
+    /// Adds those of a text; `None` if there is anything else.
+    fn add(&mut self, text: &str) -> Option<()> {
+        match self {
+            Numbers::Integers(values) => add_all(values, text, super::integer),
+            Numbers::Floats(values) => add_all(values, text, super::float),
+        }
+    }
+}
+
+/// Reads pieces of a text side by side.
+fn add_all<T: Send>(values: &mut Vec<T>, text: &str, one: impl Fn(&str) -> Option<T> + Sync) -> Option<()> {
+    let mut pieces = Vec::new();
+    let mut rest = text;
+    // Bytes of other characters than ASCII's are none of the spaces.
+    while let Some(space) =
+        rest.as_bytes().get(PIECE..).and_then(|bytes| bytes.iter().position(u8::is_ascii_whitespace))
+    {
+        let (piece, after) = rest.split_at(PIECE + space);
+        pieces.push(piece);
+        rest = after;
+    }
+    pieces.push(rest);
+    let read = |piece: &&str| piece.split_ascii_whitespace().map(&one).collect::<Option<Vec<T>>>();
+    if let [piece] = pieces[..] {
+        values.extend(read(&piece)?);
+        return Some(());
+    }
+    let read: Option<Vec<Vec<T>>> = pieces.par_iter().map(read).collect();
+    read?.into_iter().for_each(|piece| values.extend(piece));
+    Some(())
+}
+
+fn is_space(c: char) -> bool {
+    c.is_ascii_whitespace()
 }
 
 impl Text {
@@ -81,7 +122,7 @@ struct Sieve {
     /// The list that is being read, and where in `kept` it begins.
     list: (usize, Numbers),
     /// A number at the end of a block, whose other half comes with the next.
-    half: Vec<u8>,
+    half: String,
 }
 
 impl Sieve {
@@ -93,7 +134,7 @@ impl Sieve {
             lists: HashMap::new(),
             declared: None,
             list: (0, Numbers::Floats(Vec::new())),
-            half: Vec::new(),
+            half: String::new(),
         };
         let mut block = Vec::new();
         loop {
@@ -166,47 +207,30 @@ impl Sieve {
 
     /// Reads numbers; how many bytes they took. `None` if there is anything else.
     fn numbers(&mut self, bytes: &[u8]) -> Option<usize> {
-        let is_end = |byte: &u8| byte.is_ascii_whitespace() || *byte == b']';
-        let mut at = 0;
-        loop {
-            let rest = &bytes[at..];
-            let length = rest.iter().position(is_end).unwrap_or(rest.len());
-            let word = &rest[..length];
-            if self.half.len() + length > LONGEST_NUMBER {
-                return None;
-            }
-            at += length;
-            let Some(&end) = bytes.get(at) else {
-                self.half.extend(word);
-                return Some(at);
-            };
-            if !self.half.is_empty() {
-                self.half.extend(word);
-                let whole = std::mem::take(&mut self.half);
-                self.number(&whole)?;
-            } else if !word.is_empty() {
-                self.number(word)?;
-            }
-            at += 1;
-            match end {
-                b'\n' => self.kept.push(end),
-                b']' => {
-                    self.close();
-                    return Some(at);
-                }
-                _ => {}
+        let end = bytes.iter().position(|byte| *byte == b']');
+        let mut rest = std::str::from_utf8(&bytes[..end.unwrap_or(bytes.len())]).ok()?;
+        let lines = rest.bytes().filter(|byte| *byte == b'\n').count();
+        self.kept.extend(std::iter::repeat_n(b'\n', lines));
+        if !self.half.is_empty() {
+            let space = rest.find(is_space);
+            let (other, after) = rest.split_at(space.unwrap_or(rest.len()));
+            self.half.push_str(other);
+            rest = after;
+            if space.is_some() || end.is_some() {
+                let number = std::mem::take(&mut self.half);
+                self.list.1.add(&number)?;
             }
         }
-    }
-
-    #[inline]
-    fn number(&mut self, word: &[u8]) -> Option<()> {
-        let word = std::str::from_utf8(word).ok()?;
-        match &mut self.list.1 {
-            Numbers::Integers(values) => values.push(super::integer(word)?),
-            Numbers::Floats(values) => values.push(super::float(word)?),
+        if end.is_none() && !rest.is_empty() {
+            let (whole, half) = rest.split_at(rest.rfind(is_space).map_or(0, |space| space + 1));
+            self.half.push_str(half);
+            rest = whole;
         }
-        Some(())
+        self.list.1.add(rest)?;
+        if end.is_some() {
+            self.close();
+        }
+        (self.half.len() <= LONGEST_NUMBER).then(|| end.map_or(bytes.len(), |end| end + 1))
     }
 
     fn close(&mut self) {
@@ -239,6 +263,15 @@ mod tests {
         let at = |what: &str| found.text.find(what).unwrap() + what.len() - 1;
         assert_eq!(found.lists[&at("indices\" [")], Numbers::Integers(vec![0, 1, 2]));
         assert_eq!(found.lists[&at("P\" [")], Numbers::Floats(vec![1.0, 2.5, -30.0]));
+    }
+
+    #[test]
+    fn numbers_across_blocks_are_whole() {
+        let numbers: Vec<String> = (0..1_500_000).map(|i| format!("{}", i * 7)).collect();
+        let text = format!("\"integer a\" [{}]", numbers.join(" "));
+        assert!(text.len() > 2 * BLOCK);
+        let expected: Vec<i32> = (0..1_500_000).map(|i| i * 7).collect();
+        assert_eq!(sieved(&text).unwrap().lists[&12], Numbers::Integers(expected));
     }
 
     #[test]
