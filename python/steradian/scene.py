@@ -113,7 +113,7 @@ def load_with_diagnostics(
     color: bool = False,
 ) -> Loaded:
     """As :func:`load`, but what is wrong is returned; ``color`` adds ANSI escapes to the report."""
-    texts = {str(name): _as_text(value) for name, value in (defines or {}).items()}
+    texts = {str(name): as_text(value) for name, value in (defines or {}).items()}
     if isinstance(source, Mapping):
         name = "<dict>"
         if texts:
@@ -138,7 +138,7 @@ def checked_threads(threads: int | None) -> int:
     return int(threads)
 
 
-def _as_text(value: Any) -> str:
+def as_text(value: Any) -> str:
     """As the file would spell it."""
     if isinstance(value, bool):
         return "true" if value else "false"
