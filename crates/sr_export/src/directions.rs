@@ -4,8 +4,10 @@ use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
-use sr_render::light::sphere_direction;
-use sr_scene::{Image, Pixels, Rgb, SphereMapping};
+use sr_render::light::{Probe, sphere_direction};
+use sr_scene::{Image, LightDesc, Pixels, Rgb, SceneDesc, SphereMapping};
+
+use crate::bake::{Baker, decoded};
 
 /// Looks in each direction of a texel: so often across and down.
 const LOOKS: u32 = 4;
@@ -40,4 +42,14 @@ pub fn image(
 pub fn square_side(image: &Image) -> u32 {
     let texels = image.width as f32 * image.height as f32;
     ((1.25 * texels.sqrt()).ceil() as u32).clamp(16, 4096)
+}
+
+/// The mean over all directions of the intensity of a light at a point.
+pub fn mean_intensity(scene: &SceneDesc, baker: &Baker<'_>, light: &LightDesc, position: Vec3) -> Rgb {
+    let probe = Probe::new(light, scene, baker.textures());
+    // All texels of such an image fill the same solid angle.
+    let mapping = SphereMapping::EqualAreaOctahedral;
+    let image = image("", (128, 128), mapping, |w| probe.intensity(position, w));
+    let sum = decoded(&image, false).fold(glam::DVec3::ZERO, |sum, color| sum + color.as_dvec3());
+    (sum / f64::from(image.width * image.height)).as_vec3()
 }

@@ -33,32 +33,6 @@ pub fn has_texture(scene: &SceneDesc, id: MaterialId) -> bool {
     !desc.textures().is_empty() || desc.materials().into_iter().any(|inner| has_texture(scene, inner))
 }
 
-/// The name that a material goes by in messages.
-pub fn name(desc: &MaterialDesc) -> &'static str {
-    match desc {
-        MaterialDesc::Diffuse { .. } => "diffuse",
-        MaterialDesc::Dielectric { .. } => "dielectric",
-        MaterialDesc::ThinDielectric { .. } => "thindielectric",
-        MaterialDesc::RoughDielectric { .. } => "roughdielectric",
-        MaterialDesc::Conductor { .. } => "conductor",
-        MaterialDesc::RoughConductor { .. } => "roughconductor",
-        MaterialDesc::Plastic { .. } => "plastic",
-        MaterialDesc::RoughPlastic { .. } => "roughplastic",
-        MaterialDesc::Eon { .. } => "eon",
-        MaterialDesc::OrenNayar { .. } => "roughdiffuse",
-        MaterialDesc::DiffuseTransmission { .. } => "diffusetransmission",
-        MaterialDesc::CoatedConductor { .. } => "coatedconductor",
-        MaterialDesc::Principled(_) => "principled",
-        MaterialDesc::PrincipledThin(_) => "principledthin",
-        MaterialDesc::MetallicRoughness(_) => "metallicroughness",
-        MaterialDesc::TwoSided { .. } => "twosided",
-        MaterialDesc::Mask { .. } => "mask",
-        MaterialDesc::Blend { .. } => "blendbsdf",
-        MaterialDesc::BumpMap { .. } => "bumpmap",
-        MaterialDesc::NormalMap { .. } => "normalmap",
-    }
-}
-
 /// Is it this number everywhere?
 pub fn is(input: ScalarInput, value: f32) -> bool {
     input == ScalarInput::Constant(value)

@@ -162,12 +162,7 @@ impl Writer<'_> {
     /// A point that shines evenly, with the same power as a light has.
     fn mean_point(&mut self, xml: &mut Xml, light: &LightDesc, placement: &Mat4) {
         let position = placement.w_axis.truncate();
-        let probe = Probe::new(light, self.scene, self.baker.textures());
-        let mapping = SphereMapping::EqualAreaOctahedral;
-        let image = directions::image("", (128, 128), mapping, |w| probe.intensity(position, w));
-        let texels = crate::bake::decoded(&image, false);
-        let sum = texels.fold(glam::DVec3::ZERO, |sum, color| sum + color.as_dvec3());
-        point(xml, position, (sum / f64::from(image.width * image.height)).as_vec3());
+        point(xml, position, directions::mean_intensity(self.scene, &self.baker, light, position));
     }
 }
 
