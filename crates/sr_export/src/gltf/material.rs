@@ -300,19 +300,19 @@ impl Writer<'_> {
                     ..PLAIN
                 }
             }
-            MaterialDesc::Plastic { eta, diffuse_reflectance, .. } => {
+            MaterialDesc::Plastic { eta, diffuse_reflectance, nonlinear, .. } => {
                 approximated("plastic", "a dielectric over a base of its color is written");
                 MetallicRoughnessDesc {
-                    base_color: *diffuse_reflectance,
+                    base_color: below_coat(*diffuse_reflectance, *eta, *nonlinear),
                     roughness: NONE,
                     ior: eta.max(1.0),
                     ..PLAIN
                 }
             }
-            MaterialDesc::RoughPlastic { alpha, eta, diffuse_reflectance, .. } => {
+            MaterialDesc::RoughPlastic { alpha, eta, diffuse_reflectance, nonlinear, .. } => {
                 approximated("plastic", "a dielectric over a base of its color is written");
                 MetallicRoughnessDesc {
-                    base_color: *diffuse_reflectance,
+                    base_color: below_coat(*diffuse_reflectance, *eta, *nonlinear),
                     roughness: ScalarInput::Constant(alpha.sqrt().min(1.0)),
                     ior: eta.max(1.0),
                     ..PLAIN
@@ -430,4 +430,16 @@ impl Surface {
 /// A dielectric without a reflection of its own is its diffuse base.
 fn diffuse(reflectance: ColorInput) -> MetallicRoughnessDesc {
     MetallicRoughnessDesc { base_color: reflectance, specular: NONE, ..PLAIN }
+}
+
+/// What a base reflects, of light that the coat let in once, until it leaves: glTF's bases have no coat over them. The
+/// colors of textures stay.
+fn below_coat(albedo: ColorInput, eta: f32, nonlinear: bool) -> ColorInput {
+    match albedo {
+        ColorInput::Constant(albedo) if nonlinear => {
+            let returned = sr_bsdf::interface::diffuse_reflectance(1.0 / eta);
+            ColorInput::Constant(albedo * (1.0 - returned) / (1.0 - albedo * returned))
+        }
+        input => input,
+    }
 }

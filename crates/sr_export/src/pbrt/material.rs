@@ -1,13 +1,14 @@
 //! Materials. pbrt's reflect on both sides; holes belong to shapes, tilted normals to the models themselves.
 
-use sr_bsdf::interface::diffuse_reflectance;
+use sr_bsdf::RoughPlasticTables;
+use sr_bsdf::interface::diffuse_reflectance as diffuse_reflectance_of;
 use sr_scene::{
     ColorInput, MaterialDesc, MaterialId, MicrofacetKind, Rgb, ScalarInput, Span, TextureId, Tilting,
 };
 
 use super::Writer;
 use super::text::Params;
-use super::texture::Use;
+use super::texture::{Coats, Use};
 use crate::surfaces;
 
 /// A material, and how its normals are tilted.
@@ -171,7 +172,9 @@ impl Writer<'_> {
             }
             MaterialDesc::Plastic { eta, diffuse_reflectance, specular_reflectance, nonlinear } => {
                 self.white([*specular_reflectance], span);
-                let params = self.coated(*eta, *diffuse_reflectance, *nonlinear);
+                let returned = diffuse_reflectance_of(1.0 / eta);
+                let coats = Coats::new(returned, returned, *nonlinear);
+                let params = self.coated(*eta, *diffuse_reflectance, coats);
                 self.named(&name, "coateddiffuse", params.float("roughness", 0.0), tilt);
             }
             MaterialDesc::RoughPlastic {
@@ -185,7 +188,14 @@ impl Writer<'_> {
             } => {
                 self.white([*specular_reflectance], span);
                 self.facets(*kind, *multiscatter, span);
-                let params = self.coated(*eta, *diffuse_reflectance, *nonlinear);
+                let ours = match multiscatter {
+                    true => RoughPlasticTables::lossless(model(*kind), *alpha, *eta),
+                    false => RoughPlasticTables::new(model(*kind), *alpha, *eta),
+                };
+                let pbrts = RoughPlasticTables::new(sr_bsdf::MicrofacetKind::Ggx, *alpha, *eta);
+                let coats =
+                    Coats::new(ours.internal_reflectance(), pbrts.internal_reflectance(), *nonlinear);
+                let params = self.coated(*eta, *diffuse_reflectance, coats);
                 let alpha = [ScalarInput::Constant(*alpha); 2];
                 let params = self.roughness(params, "", alpha, Use::Number);
                 self.named(&name, "coateddiffuse", params, tilt);
@@ -321,13 +331,9 @@ impl Writer<'_> {
     }
 
     /// A diffuse base under a clear coat in which light bounces until it leaves.
-    fn coated(&mut self, eta: f32, reflectance: ColorInput, nonlinear: bool) -> Params {
+    fn coated(&mut self, eta: f32, reflectance: ColorInput, coats: Coats) -> Params {
         let params = Params::default().float("eta", eta).float("thickness", 0.0).integer("maxdepth", 1000);
-        let wanted = match nonlinear {
-            true => Use::Color,
-            // As if a white base sent light back: pbrt's saturates.
-            false => Use::Base(diffuse_reflectance(1.0 / eta).to_bits()),
-        };
+        let wanted = if coats == Coats::default() { Use::Color } else { Use::Base(coats) };
         self.color(params, "reflectance", reflectance, wanted)
     }
 
@@ -395,7 +401,7 @@ impl Writer<'_> {
                 part
             };
             let coated = (!is_const(base.metallic, 1.0)).then(|| {
-                let params = self.coated(base.eta.max(1.0), base.color, true);
+                let params = self.coated(base.eta.max(1.0), base.color, Coats::default());
                 part(self, "base", "coateddiffuse", params)
             });
             let metal = (!is_const(base.metallic, 0.0)).then(|| {
@@ -427,5 +433,12 @@ impl Writer<'_> {
         }
         self.mixture(&name, base.transmission, [&shown, &glass]);
         name
+    }
+}
+
+fn model(kind: MicrofacetKind) -> sr_bsdf::MicrofacetKind {
+    match kind {
+        MicrofacetKind::Beckmann => sr_bsdf::MicrofacetKind::Beckmann,
+        MicrofacetKind::Ggx => sr_bsdf::MicrofacetKind::Ggx,
     }
 }

@@ -22,8 +22,8 @@ pub(super) enum Use {
     Number,
     /// A number, squared.
     Square,
-    /// A color as the base below a coat: how much light the coat returns, by its bits.
-    Base(u32),
+    /// A color as the base below a coat of pbrt's.
+    Base(Coats),
 }
 
 impl Use {
@@ -32,7 +32,7 @@ impl Use {
             Self::Color => color,
             Self::Number => Rgb::splat(luminance(color)),
             Self::Square => Rgb::splat(luminance(color).powi(2)),
-            Self::Base(returned) => below_coat(color, f32::from_bits(returned)),
+            Self::Base(coats) => coats.base(color),
         }
     }
 
@@ -41,9 +41,31 @@ impl Use {
     }
 }
 
-/// The albedo with which all bounces under a coat reflect as much as one bounce and white ones after it.
-pub(super) fn below_coat(albedo: Rgb, returned: f32) -> Rgb {
-    albedo / (1.0 - returned + albedo * returned)
+/// Of diffuse light from the base, how much a coat returns to it; by their bits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub(super) struct Coats {
+    ours: u32,
+    pbrts: u32,
+    /// Does our base's color saturate by interreflection? pbrt's does.
+    nonlinear: bool,
+}
+
+impl Coats {
+    /// What the same coat does to the same base is nothing to write.
+    pub fn new(ours: f32, pbrts: f32, nonlinear: bool) -> Self {
+        if nonlinear && ours == pbrts {
+            return Self::default();
+        }
+        Self { ours: ours.to_bits(), pbrts: pbrts.to_bits(), nonlinear }
+    }
+
+    /// The albedo under pbrt's coat that reflects as much as `albedo` under ours, all bounces counted.
+    fn base(self, albedo: Rgb) -> Rgb {
+        let (ours, pbrts) = (f32::from_bits(self.ours), f32::from_bits(self.pbrts));
+        let returned = if self.nonlinear { albedo * ours } else { Rgb::splat(ours) };
+        let all = albedo / (1.0 - returned).max(Rgb::splat(f32::EPSILON));
+        (all / (1.0 + all * pbrts)).min(Rgb::ONE)
+    }
 }
 
 impl Writer<'_> {
@@ -220,16 +242,17 @@ impl Writer<'_> {
         let scene = self.scene;
         let factored = self.baker.factored(ColorInput::Texture(id));
         let base = factored.texture.and_then(|base| scene.textures.get(base.0 as usize));
-        if let Some(TextureDesc::Bitmap { image, srgb, to_uv, .. }) = base
+        if let Some(TextureDesc::Bitmap { image, srgb, to_uv, wrap, filter, .. }) = base
             && let Some(image) = scene.images.get(*image as usize)
         {
             let is_right = matches!(image.pixels, Pixels::F32 { .. }) || *srgb == bytes_are_srgb;
-            if *to_uv == FROM_TOP && is_right {
-                return (image.clone(), factored.factor);
+            if (*wrap, *filter) != (if bytes_are_srgb { Wrap::Clamp } else { Wrap::Repeat }, Filter::Bilinear) {
+                let message = "pbrt interpolates images of lights up to their border, and repeats those of normals";
+                self.notes.push("convert::texture", span, message, "it does so here");
             }
             let linear = || self.baker.texels(image, *srgb, |color| color);
             if *to_uv == FROM_TOP {
-                return (linear(), factored.factor);
+                return (if is_right { image.clone() } else { linear() }, factored.factor);
             }
             if *to_uv == Affine2::IDENTITY {
                 return (upright(&linear()), factored.factor);
