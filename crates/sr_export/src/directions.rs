@@ -38,10 +38,10 @@ pub fn image(
     Arc::new(Image { name: name.to_owned(), width, height, pixels: Pixels::F32 { channels: 3, data } })
 }
 
-/// A side of a square image that is finer than another image.
+/// A side of a square image that is about as fine as another image, and not coarse.
 pub fn square_side(image: &Image) -> u32 {
     let texels = image.width as f32 * image.height as f32;
-    ((2.0 * texels.sqrt()).ceil() as u32).clamp(256, 4096)
+    ((1.25 * texels.sqrt()).ceil() as u32).clamp(512, 2048)
 }
 
 /// The mean over all directions of the intensity of a light at a point.

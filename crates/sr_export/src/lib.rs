@@ -19,7 +19,6 @@ mod output;
 mod pbrt;
 mod pictures;
 mod ply;
-mod support;
 mod surfaces;
 mod tessellate;
 mod write;

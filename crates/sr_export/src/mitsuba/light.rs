@@ -126,7 +126,8 @@ impl Writer<'_> {
         let instead = "it is resampled by latitude and longitude";
         if is_octahedral && !self.own("octahedral environment map", span, instead) {
             let probe = Probe::new(light, self.scene, self.baker.textures());
-            let height = directions::square_side(&image);
+            // Twice as wide: about as many texels.
+            let height = directions::square_side(&image) * 3 / 4;
             written = SphereMapping::LatLong;
             image = directions::image(&image.name, (2 * height, height), written, |w| probe.radiance(w));
             (scale, frame) = (1.0, Mat3::IDENTITY);

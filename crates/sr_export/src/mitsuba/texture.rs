@@ -48,12 +48,7 @@ impl Writer<'_> {
         match scene.textures.get(id.0 as usize)? {
             TextureDesc::Bitmap { image, filter, wrap, srgb, to_uv, span } => {
                 let image = scene.images.get(*image as usize)?;
-                let mut filter = *filter;
-                if filter == Filter::Mipmap
-                    && !self.own("filter \"mipmap\"", span, "bilinear interpolation is written")
-                {
-                    filter = Filter::Bilinear;
-                }
+                let filter = self.filter_of_texels(*filter, span);
                 self.bitmap(&mut xml, &name, image, (filter, *wrap, *srgb, *to_uv));
             }
             TextureDesc::Checkerboard { color0, color1, to_uv, span } => {
@@ -70,8 +65,7 @@ impl Writer<'_> {
                     xml.end();
                 }
             }
-            TextureDesc::Scale { input, factor, span } if self.own_plugins => {
-                let _ = span;
+            TextureDesc::Scale { input, factor, .. } if self.own_plugins => {
                 let (input, factor) = (self.prepared(*input), self.prepared(*factor));
                 xml.begin("texture", &[("type", "scale"), ("id", &name)]);
                 input.write(&mut xml, "texture");
@@ -117,9 +111,19 @@ impl Writer<'_> {
             Some(TextureDesc::Bitmap { image, filter, wrap, srgb, to_uv, .. }) => {
                 let Some(image) = self.scene.images.get(*image as usize) else { return };
                 let scaled = self.baker.texels(image, *srgb, |color| color * factored.factor);
-                self.bitmap(xml, name, &scaled, (*filter, *wrap, true, *to_uv));
+                let filter = self.filter_of_texels(*filter, span);
+                self.bitmap(xml, name, &scaled, (filter, *wrap, true, *to_uv));
             }
             _ => self.baked(xml, name, id, span, "texture \"scale\""),
+        }
+    }
+
+    /// What Mitsuba does between texels.
+    fn filter_of_texels(&mut self, filter: Filter, span: &Span) -> Filter {
+        let instead = "bilinear interpolation is written";
+        match filter {
+            Filter::Mipmap if !self.own("filter \"mipmap\"", span, instead) => Filter::Bilinear,
+            filter => filter,
         }
     }
 

@@ -362,7 +362,13 @@ impl Writer<'_> {
             }
             return self.color(params, "reflectance", reflectance, Use::Color);
         };
-        self.white([reflectance], span);
+        if !surfaces::is_white(reflectance) {
+            let message = "a metal whose reflection is colored besides";
+            let instead = "one that reflects the same at a right angle is written";
+            self.notes.push("convert::metal", span, message, instead);
+            let [eta, k, factor] = [eta, k, reflectance].map(|input| self.baker.average(input));
+            return params.rgb("reflectance", surfaces::normal_reflectance(eta, k) * factor);
+        }
         let params = self.color(params, &format!("{prefix}eta"), eta, Use::Color);
         self.color(params, &format!("{prefix}k"), k, Use::Color)
     }
