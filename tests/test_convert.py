@@ -1,8 +1,9 @@
 """Scenes in other formats: what is converted, and read again, looks the same.
 
-Gallery scenes go to a format and back. Means over blocks are compared by z, Šidák-corrected over all blocks, channels
-and scenes of a format: a format's test fails by chance once in ten thousand times, and seeds are fixed. What a format
-says in other words, such as resampled images, may differ by half a percent of the picture's mean besides.
+Gallery scenes go to a format and back. Means over blocks are compared by z, Šidák-corrected over all blocks,
+channels and scenes of a format: a format's test fails by chance once in ten thousand times, and seeds are fixed.
+What a format says in other words, such as triangles for spheres, may differ by half a percent (glTF: one percent)
+of the picture's mean besides.
 """
 
 from __future__ import annotations
@@ -180,7 +181,9 @@ def check_accessors(root: dict, binary: bytes) -> None:
                 assert np.allclose(np.linalg.norm(values(attributes["NORMAL"]), axis=1), 1, atol=1e-4)
             indices = values(primitive["indices"])
             assert len(indices) % 3 == 0 and indices.max() < len(positions)
-            assert root["bufferViews"][root["accessors"][primitive["indices"]]["bufferView"]]["target"] == 34963
+            assert (
+                root["bufferViews"][root["accessors"][primitive["indices"]]["bufferView"]]["target"] == 34963
+            )
             assert primitive["material"] < len(root["materials"])
 
 

@@ -51,10 +51,11 @@ def convert(
 
     Args:
         source: what :func:`steradian.load` takes.
-        out: a file whose name ends in ``.xml`` (Mitsuba 3), ``.pbrt`` (pbrt-v4), ``.gltf`` or ``.glb`` (glTF 2.0).
+        out: a file whose name ends in ``.xml`` (Mitsuba 3), ``.pbrt`` (pbrt-v4), ``.gltf`` or ``.glb``
+            (glTF 2.0).
         defines: values for the file's ``$name``, over its own defaults.
-        own_plugins: may XML name what Steradian has and Mitsuba has not? Then Mitsuba does not read it; otherwise
-            the nearest that Mitsuba has is written.
+        own_plugins: may XML name what Steradian has and Mitsuba has not? Then Mitsuba does not read it;
+            otherwise the nearest that Mitsuba has is written.
         overwrite: may files that are there be replaced? Those that the scene is read from never are.
         threads: threads to use; all available cores unless given.
 

@@ -10,7 +10,7 @@ use sr_scene::{Image, LightDesc, Pixels, Rgb, SceneDesc, SphereMapping};
 use crate::bake::{Baker, decoded};
 
 /// Looks in each direction of a texel: so often across and down.
-const LOOKS: u32 = 4;
+const LOOKS: u32 = 2;
 
 /// An image of what `of` is in each direction, the mean over each texel.
 pub fn image(

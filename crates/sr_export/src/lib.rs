@@ -31,7 +31,6 @@ use sr_scene::{Diagnostic, Geometry, SceneDesc};
 pub use output::{Content, OutputFile};
 pub use write::{WriteError, write_files};
 
-
 /// A format to write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Target {

@@ -12,7 +12,8 @@ pub fn write(mesh: &MeshDesc, out: &mut impl Write) -> io::Result<()> {
         (&["u", "v"], !mesh.uvs.is_empty()),
         (&["r", "g", "b"], !mesh.vertex_colors.is_empty()),
     ];
-    let mut header = format!("ply\nformat binary_little_endian 1.0\nelement vertex {}\n", mesh.positions.len());
+    let mut header =
+        format!("ply\nformat binary_little_endian 1.0\nelement vertex {}\n", mesh.positions.len());
     for name in columns.iter().filter(|(_, is_there)| *is_there).flat_map(|(names, _)| *names) {
         header.push_str(&format!("property float {name}\n"));
     }

@@ -150,12 +150,8 @@ mod tests {
                 }
             }
         }
-        let sphere = Geometry::Sphere {
-            center: Vec3::ZERO,
-            radius: 1.0,
-            frame: Mat3::IDENTITY,
-            flip_normals: false,
-        };
+        let sphere =
+            Geometry::Sphere { center: Vec3::ZERO, radius: 1.0, frame: Mat3::IDENTITY, flip_normals: false };
         assert!((volume(&mesh(&sphere).0) / (4.0 / 3.0 * PI) - 1.0).abs() < 3e-3);
     }
 }

@@ -5,10 +5,10 @@ use std::sync::Arc;
 use glam::{Affine2, Mat3, Mat4, Vec2, Vec3};
 use sr_export::{Target, export};
 use sr_scene::{
-    CameraDesc, ColorInput, Emission, FilmDesc, Filter, FilterDesc, FovAxis, Geometry, Image, IntensityProfile,
-    Lens, LightDesc, MaterialDesc, MaterialId, MeshColorOf, MeshDesc, MetallicRoughnessDesc, MicrofacetKind,
-    Pixels, PrincipledDesc, PrincipledThinDesc, Projection, Rgb, ScalarInput, SceneDesc, Settings, ShapeDesc,
-    Span, SphereMapping, TextureDesc, TextureId, Tilting, Wrap,
+    CameraDesc, ColorInput, Emission, FilmDesc, Filter, FilterDesc, FovAxis, Geometry, Image,
+    IntensityProfile, Lens, LightDesc, MaterialDesc, MaterialId, MeshColorOf, MeshDesc,
+    MetallicRoughnessDesc, MicrofacetKind, Pixels, PrincipledDesc, PrincipledThinDesc, Projection, Rgb,
+    ScalarInput, SceneDesc, Settings, ShapeDesc, Span, SphereMapping, TextureDesc, TextureId, Tilting, Wrap,
 };
 
 const GREY: ColorInput = ColorInput::Constant(Rgb::splat(0.5));
@@ -26,11 +26,11 @@ const TARGETS: [Target; 4] = [
 /// A scene about which every format has as little to say as about any.
 fn scene() -> SceneDesc {
     let span = Span::default();
-    let image = |mapping: u32| Image {
+    let image = |width: u32| Image {
         name: "image".into(),
-        width: mapping,
+        width,
         height: 4,
-        pixels: Pixels::F32 { channels: 3, data: vec![0.5; 12 * mapping as usize] },
+        pixels: Pixels::U8 { channels: 3, data: vec![128; 12 * width as usize] },
     };
     let mesh = MeshDesc {
         positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
@@ -209,22 +209,34 @@ fn materials() -> Vec<(&'static str, SceneDesc)> {
         ("diffuse, its back black", clear(MaterialDesc::Diffuse { reflectance: GREY })),
         ("eon", opaque(MaterialDesc::Eon { reflectance: GREY, roughness: SOME })),
         ("roughdiffuse", opaque(MaterialDesc::OrenNayar { reflectance: GREY, sigma: SOME })),
-        ("diffusetransmission", clear(MaterialDesc::DiffuseTransmission { reflectance: GREY, transmittance: GREY })),
-        ("dielectric", clear(MaterialDesc::Dielectric {
-            eta: 1.5,
-            specular_reflectance: WHITE,
-            specular_transmittance: WHITE,
-        })),
-        ("dielectric, colored", clear(MaterialDesc::Dielectric {
-            eta: 1.5,
-            specular_reflectance: WHITE,
-            specular_transmittance: GREY,
-        })),
-        ("thindielectric", clear(MaterialDesc::ThinDielectric {
-            eta: 1.5,
-            specular_reflectance: WHITE,
-            specular_transmittance: WHITE,
-        })),
+        (
+            "diffusetransmission",
+            clear(MaterialDesc::DiffuseTransmission { reflectance: GREY, transmittance: GREY }),
+        ),
+        (
+            "dielectric",
+            clear(MaterialDesc::Dielectric {
+                eta: 1.5,
+                specular_reflectance: WHITE,
+                specular_transmittance: WHITE,
+            }),
+        ),
+        (
+            "dielectric, colored",
+            clear(MaterialDesc::Dielectric {
+                eta: 1.5,
+                specular_reflectance: WHITE,
+                specular_transmittance: GREY,
+            }),
+        ),
+        (
+            "thindielectric",
+            clear(MaterialDesc::ThinDielectric {
+                eta: 1.5,
+                specular_reflectance: WHITE,
+                specular_transmittance: WHITE,
+            }),
+        ),
         ("roughdielectric", clear(dielectric(false))),
         ("roughdielectric, multiscatter", clear(dielectric(true))),
         ("conductor", opaque(MaterialDesc::Conductor { eta_k: metal, specular_reflectance: WHITE })),
@@ -232,27 +244,34 @@ fn materials() -> Vec<(&'static str, SceneDesc)> {
         ("roughconductor", opaque(conductor(ggx, false))),
         ("roughconductor, beckmann", opaque(conductor(MicrofacetKind::Beckmann, false))),
         ("roughconductor, multiscatter", opaque(conductor(ggx, true))),
-        ("plastic", opaque(MaterialDesc::Plastic {
-            eta: 1.5,
-            diffuse_reflectance: GREY,
-            specular_reflectance: WHITE,
-            nonlinear: false,
-        })),
+        (
+            "plastic",
+            opaque(MaterialDesc::Plastic {
+                eta: 1.5,
+                diffuse_reflectance: GREY,
+                specular_reflectance: WHITE,
+                nonlinear: false,
+            }),
+        ),
         ("roughplastic", opaque(plastic(false, false))),
         ("coateddiffuse", opaque(plastic(true, true))),
-        ("coatedconductor", opaque(MaterialDesc::CoatedConductor {
-            kind: ggx,
-            coat_alpha: 0.1,
-            eta: 1.5,
-            alpha: 0.2,
-            eta_k: metal,
-            specular_reflectance: WHITE,
-        })),
+        (
+            "coatedconductor",
+            opaque(MaterialDesc::CoatedConductor {
+                kind: ggx,
+                coat_alpha: 0.1,
+                eta: 1.5,
+                alpha: 0.2,
+                eta_k: metal,
+                specular_reflectance: WHITE,
+            }),
+        ),
         ("principled", opaque(MaterialDesc::Principled(principled))),
         ("principledthin", clear(MaterialDesc::PrincipledThin(thin))),
         ("metallicroughness", opaque(MaterialDesc::MetallicRoughness(metallic_roughness))),
         ("twosided, two materials", {
-            let mut scene = with_material(MaterialDesc::TwoSided { front: MaterialId(0), back: MaterialId(0) }, false);
+            let mut scene =
+                with_material(MaterialDesc::TwoSided { front: MaterialId(0), back: MaterialId(0) }, false);
             scene.materials.push(MaterialDesc::Diffuse { reflectance: WHITE });
             scene.materials[2] = MaterialDesc::TwoSided { front: MaterialId(0), back: MaterialId(3) };
             scene
@@ -260,19 +279,24 @@ fn materials() -> Vec<(&'static str, SceneDesc)> {
         ("mask", clear(MaterialDesc::Mask { opacity: SOME, inner })),
         ("null", clear(MaterialDesc::Mask { opacity: NONE, inner })),
         ("blendbsdf", opaque(MaterialDesc::Blend { weight: SOME, materials: [MaterialId(0); 2] })),
-        ("bumpmap", textured(|texture| MaterialDesc::BumpMap {
-            scale: 1.0,
-            texture,
-            tilting: Tilting::default(),
-            inner: MaterialId(0),
-        })),
+        (
+            "bumpmap",
+            textured(|texture| MaterialDesc::BumpMap {
+                scale: 1.0,
+                texture,
+                tilting: Tilting::default(),
+                inner: MaterialId(0),
+            }),
+        ),
         ("normalmap", {
             let mut scene = textured(|texture| MaterialDesc::NormalMap {
                 normal: ColorInput::Texture(texture),
                 tilting: Tilting::default(),
                 inner: MaterialId(0),
             });
-            let MaterialDesc::NormalMap { tilting: own, .. } = &mut scene.materials[2] else { unreachable!() };
+            let MaterialDesc::NormalMap { tilting: own, .. } = &mut scene.materials[2] else {
+                unreachable!()
+            };
             *own = tilting;
             scene
         }),
@@ -335,97 +359,140 @@ fn others() -> Vec<(&'static str, &'static str, SceneDesc)> {
         ("texture", "bitmap", with_texture(bitmap(to_uv, Wrap::Repeat))),
         ("texture", "bitmap, mirrored tiles", with_texture(bitmap(to_uv, Wrap::Mirror))),
         ("texture", "bitmap, rotated", with_texture(bitmap(Affine2::from_angle(0.5), Wrap::Repeat))),
-        ("texture", "bitmap, mipmap", with_texture(TextureDesc::Bitmap {
-            image: 0,
-            filter: Filter::Mipmap,
-            wrap: Wrap::Repeat,
-            srgb: true,
-            to_uv,
-            span: span(),
-        })),
-        ("texture", "checkerboard", with_texture(TextureDesc::Checkerboard {
-            color0: GREY,
-            color1: WHITE,
-            to_uv,
-            span: span(),
-        })),
+        (
+            "texture",
+            "bitmap, mipmap",
+            with_texture(TextureDesc::Bitmap {
+                image: 0,
+                filter: Filter::Mipmap,
+                wrap: Wrap::Repeat,
+                srgb: true,
+                to_uv,
+                span: span(),
+            }),
+        ),
+        (
+            "texture",
+            "checkerboard",
+            with_texture(TextureDesc::Checkerboard { color0: GREY, color1: WHITE, to_uv, span: span() }),
+        ),
         ("texture", "scale", with_texture(TextureDesc::Scale { input: id, factor: GREY, span: span() })),
-        ("texture", "scale, two textures", with_texture(TextureDesc::Scale { input: id, factor: id, span: span() })),
-        ("texture", "mix", with_texture(TextureDesc::Mix { color0: id, color1: GREY, weight: SOME, span: span() })),
-        ("texture", "mesh_attribute", with_texture(TextureDesc::MeshColor {
-            of: MeshColorOf::Vertices,
-            scale: 1.0,
-            span: span(),
-        })),
+        (
+            "texture",
+            "scale, two textures",
+            with_texture(TextureDesc::Scale { input: id, factor: id, span: span() }),
+        ),
+        (
+            "texture",
+            "mix",
+            with_texture(TextureDesc::Mix { color0: id, color1: GREY, weight: SOME, span: span() }),
+        ),
+        (
+            "texture",
+            "mesh_attribute",
+            with_texture(TextureDesc::MeshColor { of: MeshColorOf::Vertices, scale: 1.0, span: span() }),
+        ),
         ("shape", "meshes", scene()),
-        ("shape", "sphere", with_shape(Geometry::Sphere { center: Vec3::ZERO, radius: 1.0, frame, flip_normals })),
-        ("shape", "disk", with_shape(Geometry::Disk {
-            center: Vec3::ZERO,
-            u_axis: Vec3::X,
-            v_axis: Vec3::Y,
-            flip_normals,
-        })),
-        ("shape", "cylinder", with_shape(Geometry::Cylinder {
-            base: Vec3::ZERO,
-            frame,
-            radius: 1.0,
-            length: 1.0,
-            flip_normals,
-        })),
-        ("shape", "bilinearpatch", with_shape(Geometry::Patch {
-            corners: [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::ONE],
-            flip_normals,
-        })),
+        (
+            "shape",
+            "sphere",
+            with_shape(Geometry::Sphere { center: Vec3::ZERO, radius: 1.0, frame, flip_normals }),
+        ),
+        (
+            "shape",
+            "disk",
+            with_shape(Geometry::Disk { center: Vec3::ZERO, u_axis: Vec3::X, v_axis: Vec3::Y, flip_normals }),
+        ),
+        (
+            "shape",
+            "cylinder",
+            with_shape(Geometry::Cylinder {
+                base: Vec3::ZERO,
+                frame,
+                radius: 1.0,
+                length: 1.0,
+                flip_normals,
+            }),
+        ),
+        (
+            "shape",
+            "bilinearpatch",
+            with_shape(Geometry::Patch { corners: [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::ONE], flip_normals }),
+        ),
         ("light", "area", emitting(GREY)),
         ("light", "area, textured", emitting(id)),
         ("light", "constant", with_light(LightDesc::Constant { radiance: Rgb::ONE, span: span() })),
         ("light", "envmap", with_light(environment(0, SphereMapping::LatLong))),
         ("light", "envmap, octahedral", with_light(environment(1, SphereMapping::EqualAreaOctahedral))),
-        ("light", "point", with_light(LightDesc::Point { position: Vec3::ZERO, intensity: Rgb::ONE, span: span() })),
-        ("light", "directional", with_light(LightDesc::Directional {
-            direction: Vec3::Z,
-            irradiance: Rgb::ONE,
-            span: span(),
-        })),
+        (
+            "light",
+            "point",
+            with_light(LightDesc::Point { position: Vec3::ZERO, intensity: Rgb::ONE, span: span() }),
+        ),
+        (
+            "light",
+            "directional",
+            with_light(LightDesc::Directional { direction: Vec3::Z, irradiance: Rgb::ONE, span: span() }),
+        ),
         ("light", "spot", with_light(spot(None, 0.4))),
         ("light", "spot, textured", textured_spot),
-        ("light", "projector", with_light(LightDesc::Projector {
-            world_from_light: place,
-            irradiance: GREY,
-            scale: 1.0,
-            fov_axis: FovAxis::X,
-            fov: 0.5,
-            span: span(),
-        })),
-        ("light", "goniometric", with_light(LightDesc::Goniometric {
-            world_from_light: place,
-            intensity: Rgb::ONE,
-            image: 0,
-            mapping: SphereMapping::LatLong,
-            span: span(),
-        })),
-        ("light", "ies", with_light(LightDesc::Profile {
-            world_from_light: place,
-            intensity: Rgb::ONE,
-            profile,
-            span: span(),
-        })),
-        ("light", "sky", with_light(LightDesc::Sky {
-            turbidity: 3.0,
-            albedo: Rgb::splat(0.3),
-            sun_direction: Vec3::Z,
-            scale: 1.0,
-            world_from_light: frame,
-            span: span(),
-        })),
-        ("light", "sun", with_light(LightDesc::Sun {
-            turbidity: 3.0,
-            direction: Vec3::Z,
-            scale: 1.0,
-            aperture: 0.01,
-            world_from_light: frame,
-            span: span(),
-        })),
+        (
+            "light",
+            "projector",
+            with_light(LightDesc::Projector {
+                world_from_light: place,
+                irradiance: GREY,
+                scale: 1.0,
+                fov_axis: FovAxis::X,
+                fov: 0.5,
+                span: span(),
+            }),
+        ),
+        (
+            "light",
+            "goniometric",
+            with_light(LightDesc::Goniometric {
+                world_from_light: place,
+                intensity: Rgb::ONE,
+                image: 0,
+                mapping: SphereMapping::LatLong,
+                span: span(),
+            }),
+        ),
+        (
+            "light",
+            "ies",
+            with_light(LightDesc::Profile {
+                world_from_light: place,
+                intensity: Rgb::ONE,
+                profile,
+                span: span(),
+            }),
+        ),
+        (
+            "light",
+            "sky",
+            with_light(LightDesc::Sky {
+                turbidity: 3.0,
+                albedo: Rgb::splat(0.3),
+                sun_direction: Vec3::Z,
+                scale: 1.0,
+                world_from_light: frame,
+                span: span(),
+            }),
+        ),
+        (
+            "light",
+            "sun",
+            with_light(LightDesc::Sun {
+                turbidity: 3.0,
+                direction: Vec3::Z,
+                scale: 1.0,
+                aperture: 0.01,
+                world_from_light: frame,
+                span: span(),
+            }),
+        ),
         ("camera", "perspective", scene()),
         ("camera", "perspective, shifted", with_projection(perspective(Vec2::splat(0.1), None))),
         ("camera", "perspective, clipped", clipped),

@@ -152,8 +152,8 @@ def _add_convert(commands: argparse._SubParsersAction[_Parser]) -> None:
     parser = commands.add_parser(
         "convert",
         help="write a scene in the format of another renderer",
-        description="Writes SCENE as OUT, in the format that its name ends with: .xml (Mitsuba 3), .pbrt (pbrt-v4), "
-        ".gltf or .glb (glTF 2.0). Meshes and images go to a folder beside it, of its name without the ending. "
+        description="Writes SCENE as OUT, in the format that its name ends with: .xml (Mitsuba 3), "
+        ".pbrt (pbrt-v4), .gltf or .glb (glTF 2.0). Meshes and images go to a folder beside it. "
         "What the format cannot say is said, with what is written instead. Succeeds only if all was written.",
         epilog=CONVERT_EXAMPLES,
         formatter_class=_Wrapped,

@@ -21,11 +21,10 @@ pub struct Buffer {
 impl Buffer {
     /// Positions, with their bounds, which the format asks for.
     pub fn positions(&mut self, values: &[Vec3]) -> usize {
-        let bounds = values.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |b, p| (b.0.min(*p), b.1.max(*p)));
-        let bounds = vec![
-            ("min", Json::numbers(&bounds.0.to_array())),
-            ("max", Json::numbers(&bounds.1.to_array())),
-        ];
+        let bounds =
+            values.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |b, p| (b.0.min(*p), b.1.max(*p)));
+        let bounds =
+            vec![("min", Json::numbers(&bounds.0.to_array())), ("max", Json::numbers(&bounds.1.to_array()))];
         self.floats(values.iter().flat_map(|v| v.to_array()), values.len(), "VEC3", bounds)
     }
 

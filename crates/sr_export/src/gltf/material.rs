@@ -257,7 +257,7 @@ impl Writer<'_> {
             }
             MaterialDesc::DiffuseTransmission { reflectance, .. } => {
                 approximated("diffuse transmission", "diffuse reflection is written, nothing passes");
-                diffuse(*reflectance)
+                return Surface { has_back: true, ..Surface::of(diffuse(*reflectance)) };
             }
             MaterialDesc::Dielectric { eta, specular_reflectance, specular_transmittance } => {
                 approximated("dielectric of its own", "a clear body without a base is written");
@@ -270,7 +270,11 @@ impl Writer<'_> {
                 return self.glass(*eta, 0.0, true, white, &span);
             }
             MaterialDesc::RoughDielectric {
-                alpha, eta, specular_reflectance, specular_transmittance, ..
+                alpha,
+                eta,
+                specular_reflectance,
+                specular_transmittance,
+                ..
             } => {
                 approximated("rough dielectric of its own", "a clear body without a base is written");
                 let roughness = self.roughness(*alpha, &span);
@@ -289,7 +293,10 @@ impl Writer<'_> {
                 MetallicRoughnessDesc { base_color: color, metallic: WHOLE, roughness, ..PLAIN }
             }
             MaterialDesc::CoatedConductor { coat_alpha, alpha, eta_k, specular_reflectance, .. } => {
-                approximated("metal of a complex index", "one of its color at a right angle is written, with a coat");
+                approximated(
+                    "metal of a complex index",
+                    "one of its color at a right angle is written, with a coat",
+                );
                 let color = self.metal(*eta_k, *specular_reflectance);
                 MetallicRoughnessDesc {
                     base_color: color,
@@ -319,7 +326,10 @@ impl Writer<'_> {
                 }
             }
             MaterialDesc::Principled(p) => {
-                approximated("material \"principled\"", "what both have is written: base, metal, roughness, coat");
+                approximated(
+                    "material \"principled\"",
+                    "what both have is written: base, metal, roughness, coat",
+                );
                 let gloss = self.baker.average_number(p.clearcoat_gloss);
                 MetallicRoughnessDesc {
                     base_color: p.base_color,
@@ -336,7 +346,10 @@ impl Writer<'_> {
                 }
             }
             MaterialDesc::PrincipledThin(p) => {
-                approximated("material \"principledthin\"", "what both have is written: base, roughness, transmission");
+                approximated(
+                    "material \"principledthin\"",
+                    "what both have is written: base, roughness, transmission",
+                );
                 MetallicRoughnessDesc {
                     base_color: p.base_color,
                     roughness: p.roughness,

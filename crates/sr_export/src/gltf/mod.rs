@@ -90,7 +90,8 @@ impl Writer<'_> {
         let generator = concat!("steradian ", env!("CARGO_PKG_VERSION"));
         let asset = vec![("version", Json::text("2.0")), ("generator", Json::text(generator))];
         let mut root = vec![("asset", Json::Object(asset))];
-        let names = |set: &BTreeSet<&'static str>| set.iter().map(|name| Json::text(name)).collect::<Vec<_>>();
+        let names =
+            |set: &BTreeSet<&'static str>| set.iter().map(|name| Json::text(name)).collect::<Vec<_>>();
         let mut add = |name: &'static str, list: Vec<Json>| {
             // The format has no empty lists.
             if !list.is_empty() {
@@ -160,7 +161,9 @@ fn uri(file: &str) -> String {
     let mut out = String::new();
     for byte in file.bytes() {
         match byte {
-            b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'-' | b'_' | b'.' | b'~' | b'/' => out.push(byte.into()),
+            b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'-' | b'_' | b'.' | b'~' | b'/' => {
+                out.push(byte.into())
+            }
             _ => out.push_str(&format!("%{byte:02X}")),
         }
     }

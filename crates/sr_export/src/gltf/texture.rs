@@ -98,13 +98,14 @@ impl Writer<'_> {
 
     fn baked(&mut self, key: &str, parts: &[TextureId], channels: Channels, span: &Span) -> Json {
         let first: Vec<_> = parts.iter().map(|part| self.baker.over_unit_square(*part, |c| c)).collect();
-        let (width, height) = first.iter().fold((1, 1), |size, baked| {
-            (size.0.max(baked.image.width), size.1.max(baked.image.height))
-        });
+        let (width, height) = first
+            .iter()
+            .fold((1, 1), |size, baked| (size.0.max(baked.image.width), size.1.max(baked.image.height)));
         let resized = |baked: &crate::bake::Baked| -> Vec<Rgb> {
             let colors: Vec<Rgb> = decoded(&baked.image, false).collect();
             let (w, h) = (baked.image.width as usize, baked.image.height as usize);
-            let nearest = |at: u32, of: u32, size: usize| (at as usize * size / of.max(1) as usize).min(size - 1);
+            let nearest =
+                |at: u32, of: u32, size: usize| (at as usize * size / of.max(1) as usize).min(size - 1);
             (0..width * height)
                 .map(|at| {
                     let (x, y) = (nearest(at % width, width, w), nearest(at / width, height, h));
@@ -115,7 +116,8 @@ impl Writer<'_> {
         let colors: Vec<Vec<Rgb>> = first.iter().map(resized).collect();
         let filter = first.first().map_or(Filter::Bilinear, |baked| baked.filter);
         let message = "glTF's textures are images";
-        let instead = format!("one of {width} × {height} texels is written, repeated for each unit of u and v");
+        let instead =
+            format!("one of {width} × {height} texels is written, repeated for each unit of u and v");
         self.notes.push("convert::texture-as-image", span, message, instead);
         let index = self.image_texture(key, (width, height), &colors, channels, (filter, Wrap::Repeat));
         // v is counted from the other end.
@@ -224,10 +226,8 @@ fn transform(to_uv: Affine2) -> Option<Vec<(&'static str, Json)>> {
     if (y - sy * Vec2::new(sin, cos)).length() > 1e-5 * y.length().max(length) {
         return None;
     }
-    let mut list = vec![
-        ("offset", Json::numbers(&m.translation.to_array())),
-        ("scale", Json::numbers(&[sx, sy])),
-    ];
+    let mut list =
+        vec![("offset", Json::numbers(&m.translation.to_array())), ("scale", Json::numbers(&[sx, sy]))];
     if sin != 0.0 {
         list.push(("rotation", Json::Number(f32::atan2(sin, cos))));
     }

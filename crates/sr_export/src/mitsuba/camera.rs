@@ -29,12 +29,15 @@ impl Writer<'_> {
                 let instead = "a perspective camera of 90° that looks along its middle is written";
                 match self.own("camera that sees all around", &camera.span, instead) {
                     true => ("spherical", camera.projection),
-                    false => ("perspective", Projection::Perspective {
-                        fov_axis: FovAxis::X,
-                        fov: std::f32::consts::FRAC_PI_2,
-                        principal_point_offset: glam::Vec2::ZERO,
-                        lens: None,
-                    }),
+                    false => (
+                        "perspective",
+                        Projection::Perspective {
+                            fov_axis: FovAxis::X,
+                            fov: std::f32::consts::FRAC_PI_2,
+                            principal_point_offset: glam::Vec2::ZERO,
+                            lens: None,
+                        },
+                    ),
                 }
             }
         };
@@ -95,7 +98,7 @@ impl Writer<'_> {
         let mut filter = filter;
         if let FilterDesc::BlackmanHarris { radius } = filter {
             // Of the same variance.
-            let stddev = 0.22 * radius;
+            let stddev = (220.0 * radius).round() / 1000.0;
             let instead = format!("a Gaussian of standard deviation {stddev} is written");
             if !self.own("filter \"blackmanharris\"", span, &instead) {
                 filter = FilterDesc::Gaussian { stddev, radius: 4.0 * stddev };
@@ -108,7 +111,9 @@ impl Writer<'_> {
                     xml.float("radius", radius);
                 }
             }
-            FilterDesc::Tent { radius } | FilterDesc::BlackmanHarris { radius } => xml.float("radius", radius),
+            FilterDesc::Tent { radius } | FilterDesc::BlackmanHarris { radius } => {
+                xml.float("radius", radius)
+            }
             FilterDesc::Gaussian { stddev, radius } => {
                 if (radius / stddev - 4.0).abs() > 1e-3 {
                     self.notes.push(

@@ -227,7 +227,13 @@ impl Writer<'_> {
     fn two_sided(&mut self, xml: &mut Xml, id: &str, [front, back]: [MaterialId; 2], span: &Span) {
         let passes = [front, back].into_iter().any(|side| surfaces::transmits(self.scene, side));
         let sides = [self.material(front), self.material(back)];
-        if passes && !self.own("two-sided bsdf that lets light through", span, "its front is written, which has both sides") {
+        if passes
+            && !self.own(
+                "two-sided bsdf that lets light through",
+                span,
+                "its front is written, which has both sides",
+            )
+        {
             // What lets light through is told by both of its sides; nothing else is to be added.
             xml.begin("bsdf", &[("type", "mask"), ("id", id)]);
             xml.float("opacity", 1.0);
@@ -349,7 +355,10 @@ impl Writer<'_> {
         let (coat, gloss) = (m.clearcoat, 1.0 - mean(self, m.clearcoat_roughness));
         // R₀ = 0.08 specular, as `ior` has it times `specular`.
         let r0 = ((m.ior - 1.0) / (m.ior + 1.0)).powi(2) * mean(self, m.specular);
-        xml.begin("bsdf", &[("type", if m.thin && transmits { "principledthin" } else { "principled" }), ("id", id)]);
+        xml.begin(
+            "bsdf",
+            &[("type", if m.thin && transmits { "principledthin" } else { "principled" }), ("id", id)],
+        );
         self.color(xml, "base_color", m.base_color);
         self.number(xml, "roughness", m.roughness);
         self.number_above_0(xml, "spec_trans", m.transmission);

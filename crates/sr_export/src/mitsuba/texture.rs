@@ -131,7 +131,8 @@ impl Writer<'_> {
         let baked = self.baker.over_unit_square(id, |color| color);
         let message = format!("Mitsuba 3 has no {what}");
         let (width, height) = (baked.image.width, baked.image.height);
-        let instead = format!("an image of {width} × {height} texels is written, repeated for each unit of u and v");
+        let instead =
+            format!("an image of {width} × {height} texels is written, repeated for each unit of u and v");
         self.notes.push("convert::texture-as-image", span, message, instead);
         self.bitmap(xml, name, &baked.image, (baked.filter, Wrap::Repeat, true, Affine2::IDENTITY));
     }

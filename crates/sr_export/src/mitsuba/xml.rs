@@ -87,8 +87,7 @@ impl Xml {
             self.leaf("scale", &[("x", &x.x.to_string()), ("y", &y.y.to_string()), ("z", "1")]);
             self.leaf("translate", &[("x", &t.x.to_string()), ("y", &t.y.to_string())]);
         } else {
-            let rows =
-                format!("{} {} 0 {} {} {} 0 {} 0 0 1 0 0 0 0 1", x.x, y.x, t.x, x.y, y.y, t.y);
+            let rows = format!("{} {} 0 {} {} {} 0 {} 0 0 1 0 0 0 0 1", x.x, y.x, t.x, x.y, y.y, t.y);
             self.leaf("matrix", &[("value", &rows)]);
         }
         self.end();

@@ -33,12 +33,10 @@ impl Writer<'_> {
             .integer("xresolution", film.width.into())
             .integer("yresolution", film.height.into());
         if let Some(crop) = film.crop {
-            params = params.integers("pixelbounds", &[
-                crop.x,
-                crop.x.saturating_add(crop.width),
-                crop.y,
-                crop.y.saturating_add(crop.height),
-            ]);
+            params = params.integers(
+                "pixelbounds",
+                &[crop.x, crop.x.saturating_add(crop.width), crop.y, crop.y.saturating_add(crop.height)],
+            );
         }
         text.directive("Film", "rgb", &params);
     }
@@ -55,7 +53,7 @@ impl Writer<'_> {
             FilterDesc::CatmullRom => ("mitchell", both(2.0).float("B", 0.0).float("C", 0.5)),
             FilterDesc::Lanczos { lobes } => ("sinc", both(lobes as f32).float("tau", lobes as f32)),
             FilterDesc::BlackmanHarris { radius } => {
-                let sigma = 0.22 * radius;
+                let sigma = (220.0 * radius).round() / 1000.0;
                 let instead = format!("a Gaussian of standard deviation {sigma} is written");
                 let message = "pbrt has no filter \"blackmanharris\"";
                 self.notes.push("convert::filter", span, message, instead);
@@ -108,12 +106,7 @@ impl Writer<'_> {
             }
             Projection::Spherical => {
                 // Our middle column looks along +Z, pbrt's along −X.
-                own = Mat4::from_cols(
-                    glam::Vec4::Z,
-                    glam::Vec4::Y,
-                    glam::Vec4::NEG_X,
-                    glam::Vec4::W,
-                );
+                own = Mat4::from_cols(glam::Vec4::Z, glam::Vec4::Y, glam::Vec4::NEG_X, glam::Vec4::W);
                 ("spherical", Params::default().string("mapping", "equirectangular"))
             }
         };

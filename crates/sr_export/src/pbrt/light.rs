@@ -36,9 +36,9 @@ impl Writer<'_> {
             LightDesc::Directional { direction, irradiance, .. } => {
                 distant(text, *direction, *irradiance);
             }
-            LightDesc::Spot { world_from_light, intensity, cutoff_angle, beam_width, texture: None, .. }
-                if cutoff_angle == beam_width =>
-            {
+            LightDesc::Spot {
+                world_from_light, intensity, cutoff_angle, beam_width, texture: None, ..
+            } if cutoff_angle == beam_width => {
                 text.concat(rigid(world_from_light));
                 let params = Params::default()
                     .rgb("I", *intensity)
@@ -54,7 +54,12 @@ impl Writer<'_> {
                 self.goniometric(text, light, world_from_light, (what, span));
             }
             LightDesc::Projector { world_from_light, span, .. } => {
-                self.goniometric(text, light, world_from_light, ("light that is evenly bright on a plane", span));
+                self.goniometric(
+                    text,
+                    light,
+                    world_from_light,
+                    ("light that is evenly bright on a plane", span),
+                );
             }
             LightDesc::Goniometric { world_from_light, span, .. } => {
                 self.goniometric(text, light, world_from_light, ("goniometric light of colors", span));
@@ -106,22 +111,29 @@ impl Writer<'_> {
     }
 
     /// A light as an image of its intensity: pbrt's have no colors but one.
-    fn goniometric(&mut self, text: &mut Text, light: &LightDesc, placement: &Mat4, (what, span): (&str, &Span)) {
+    fn goniometric(
+        &mut self,
+        text: &mut Text,
+        light: &LightDesc,
+        placement: &Mat4,
+        (what, span): (&str, &Span),
+    ) {
         let position = placement.w_axis.truncate();
         let probe = Probe::new(light, self.scene, self.baker.textures());
         // Images of directions are drawn with y and z swapped.
         let swapped = |w: Vec3| Vec3::new(w.x, w.z, w.y);
         let mapping = SphereMapping::EqualAreaOctahedral;
         let size = (GONIOMETRIC, GONIOMETRIC);
-        let colors =
-            directions::image("intensity", size, mapping, |w| probe.intensity(position, swapped(w)));
+        let colors = directions::image("intensity", size, mapping, |w| probe.intensity(position, swapped(w)));
         let sum = decoded(&colors, false).fold(glam::DVec3::ZERO, |sum, color| sum + color.as_dvec3());
         let mean = sum.as_vec3();
         let hue = mean / luminance(mean).max(f32::MIN_POSITIVE);
         let data = decoded(&colors, false).map(luminance).collect();
         let pixels = sr_scene::Pixels::F32 { channels: 1, data };
         let image = std::sync::Arc::new(sr_scene::Image { pixels, ..(*colors).clone() });
-        let instead = format!("an image of its directions of {GONIOMETRIC} × {GONIOMETRIC} texels, of one color, is written");
+        let instead = format!(
+            "an image of its directions of {GONIOMETRIC} × {GONIOMETRIC} texels, of one color, is written"
+        );
         self.notes.push("convert::light", span, format!("pbrt has no {what}"), instead);
         text.concat(Mat4::from_translation(position));
         let params = Params::default().string("filename", &self.files.image(&image)).rgb("I", hue);

@@ -97,9 +97,8 @@ impl Writer<'_> {
             matches!(desc, MaterialDesc::Diffuse { reflectance: ColorInput::Constant(Rgb::ZERO) })
         };
         let Some(desc) = scene.materials.get(id.0 as usize) else { return };
-        let has_sides = matches!(desc, MaterialDesc::TwoSided { .. })
-            || surfaces::transmits(scene, id)
-            || is_black(desc);
+        let has_sides =
+            matches!(desc, MaterialDesc::TwoSided { .. }) || surfaces::transmits(scene, id) || is_black(desc);
         if !has_sides {
             let message = "materials that reflect on their front alone";
             let instead = "in pbrt they reflect on both sides";
@@ -193,8 +192,7 @@ impl Writer<'_> {
                     false => RoughPlasticTables::new(model(*kind), *alpha, *eta),
                 };
                 let pbrts = RoughPlasticTables::new(sr_bsdf::MicrofacetKind::Ggx, *alpha, *eta);
-                let coats =
-                    Coats::new(ours.internal_reflectance(), pbrts.internal_reflectance(), *nonlinear);
+                let coats = Coats::new(ours.internal_reflectance(), pbrts.internal_reflectance(), *nonlinear);
                 let params = self.coated(*eta, *diffuse_reflectance, coats);
                 let alpha = [ScalarInput::Constant(*alpha); 2];
                 let params = self.roughness(params, "", alpha, Use::Number);
@@ -394,7 +392,8 @@ impl Writer<'_> {
 
     /// A model of many parameters: mixtures of a coated diffuse base, a metal and glass.
     fn many(&mut self, name: String, base: Base, tilt: Option<Tilt>, (what, span): (&str, &Span)) -> String {
-        let instead = "mixtures of a coated base, a metal and glass of its color, roughness and index are written";
+        let instead =
+            "mixtures of a coated base, a metal and glass of its color, roughness and index are written";
         self.notes.push("convert::approximated", span, format!("pbrt has no material \"{what}\""), instead);
         let alpha = [base.roughness; 2];
         let is_const = |input: ScalarInput, value: f32| surfaces::is(input, value);

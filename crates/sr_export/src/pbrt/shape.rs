@@ -37,7 +37,9 @@ impl Writer<'_> {
         let (material, alpha) = self.surface(shape.material);
         let light = shape.emission.map(|emission| self.area_light(emission.radiance, &shape.span));
         let is_textured = surfaces::has_texture(self.scene, shape.material)
-            || shape.emission.is_some_and(|emission| !matches!(emission.radiance, sr_scene::ColorInput::Constant(_)));
+            || shape
+                .emission
+                .is_some_and(|emission| !matches!(emission.radiance, sr_scene::ColorInput::Constant(_)));
         text.line("AttributeBegin");
         text.directive("NamedMaterial", &material, &Params::default());
         if let Some(light) = light {

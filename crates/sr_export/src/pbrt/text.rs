@@ -52,7 +52,11 @@ impl Params {
 
     /// Is roughness not α yet? Said once.
     pub fn remapped(self, remapped: bool) -> Self {
-        if self.0.contains("\"bool remaproughness\"") { self } else { self.boolean("remaproughness", remapped) }
+        if self.0.contains("\"bool remaproughness\"") {
+            self
+        } else {
+            self.boolean("remaproughness", remapped)
+        }
     }
 
     /// More of them.

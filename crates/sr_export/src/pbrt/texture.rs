@@ -142,11 +142,8 @@ impl Writer<'_> {
                 self.notes.push("convert::texture", span, message, "grey is written");
                 let grey = ColorInput::Constant(wanted.apply(Rgb::splat(0.5 * scale)));
                 let params = self.either(Params::default(), "value", grey, Use::Color);
-                let params = if wanted.is_number() {
-                    Params::default().float("value", 0.5 * scale)
-                } else {
-                    params
-                };
+                let params =
+                    if wanted.is_number() { Params::default().float("value", 0.5 * scale) } else { params };
                 self.definitions.texture(name, kind, "constant", &params);
             }
             TextureDesc::Bitmap { span, .. } => {
@@ -185,7 +182,8 @@ impl Writer<'_> {
 
     /// The image that has what is wanted, and whether its bytes are sRGB-encoded.
     fn wanted_image(&mut self, image: &Arc<Image>, srgb: bool, wanted: Use) -> (Arc<Image>, bool) {
-        let is_grey = matches!(image.pixels, Pixels::U8 { channels: 1, .. } | Pixels::F32 { channels: 1, .. });
+        let is_grey =
+            matches!(image.pixels, Pixels::U8 { channels: 1, .. } | Pixels::F32 { channels: 1, .. });
         match wanted {
             Use::Color => (image.clone(), srgb),
             Use::Number if is_grey => (image.clone(), srgb),
@@ -200,7 +198,8 @@ impl Writer<'_> {
     fn baked(&mut self, name: &str, kind: &str, id: TextureId, wanted: Use, (span, what): (&Span, &str)) {
         let baked = self.baker.over_unit_square(id, |color| wanted.apply(color));
         let (width, height) = (baked.image.width, baked.image.height);
-        let instead = format!("an image of {width} × {height} texels is written, repeated for each unit of u and v");
+        let instead =
+            format!("an image of {width} × {height} texels is written, repeated for each unit of u and v");
         self.notes.push("convert::texture-as-image", span, format!("pbrt has no {what}"), instead);
         let image = if wanted.is_number() { grey(&baked.image, false) } else { baked.image };
         self.imagemap(name, kind, &image, false, (baked.filter, Wrap::Repeat, FROM_TOP));
@@ -238,7 +237,12 @@ impl Writer<'_> {
     }
 
     /// An image of a color over the surface's unit square, as lights and normals want it, and a factor.
-    pub(super) fn plain_image(&mut self, id: TextureId, span: &Span, bytes_are_srgb: bool) -> (Arc<Image>, Rgb) {
+    pub(super) fn plain_image(
+        &mut self,
+        id: TextureId,
+        span: &Span,
+        bytes_are_srgb: bool,
+    ) -> (Arc<Image>, Rgb) {
         let scene = self.scene;
         let factored = self.baker.factored(ColorInput::Texture(id));
         let base = factored.texture.and_then(|base| scene.textures.get(base.0 as usize));
@@ -246,8 +250,10 @@ impl Writer<'_> {
             && let Some(image) = scene.images.get(*image as usize)
         {
             let is_right = matches!(image.pixels, Pixels::F32 { .. }) || *srgb == bytes_are_srgb;
-            if (*wrap, *filter) != (if bytes_are_srgb { Wrap::Clamp } else { Wrap::Repeat }, Filter::Bilinear) {
-                let message = "pbrt interpolates images of lights up to their border, and repeats those of normals";
+            if (*wrap, *filter) != (if bytes_are_srgb { Wrap::Clamp } else { Wrap::Repeat }, Filter::Bilinear)
+            {
+                let message =
+                    "pbrt interpolates images of lights up to their border, and repeats those of normals";
                 self.notes.push("convert::texture", span, message, "it does so here");
             }
             let linear = || self.baker.texels(image, *srgb, |color| color);
