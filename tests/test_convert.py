@@ -1,9 +1,9 @@
 """Scenes in other formats: what is converted, and read again, looks the same.
 
 Gallery scenes go to a format and back. Means over blocks are compared by z, Šidák-corrected over all blocks,
-channels and scenes of a format: a format's test fails by chance once in ten thousand times, and seeds are fixed.
-What a format says in other words, such as triangles for spheres, may differ by half a percent (glTF: one percent)
-of the picture's mean besides.
+channels and scenes of a format: a format's test fails by chance once in ten thousand times; seeds are fixed.
+What a format says in other words, such as triangles for spheres, may differ by half a percent (glTF: one
+percent) of the picture's mean besides.
 """
 
 from __future__ import annotations

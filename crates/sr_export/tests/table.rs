@@ -131,7 +131,7 @@ fn materials() -> Vec<(&'static str, SceneDesc)> {
     let clear = |desc| with_material(desc, false);
     let inner = MaterialId(1);
     let tilting = Tilting::default();
-    let mut textured = |desc: fn(TextureId) -> MaterialDesc| {
+    let textured = |desc: fn(TextureId) -> MaterialDesc| {
         let mut scene = with_material(desc(TextureId(0)), true);
         scene.textures.push(bitmap(Affine2::IDENTITY, Wrap::Repeat));
         scene
