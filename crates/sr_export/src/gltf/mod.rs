@@ -41,11 +41,21 @@ struct Writer<'a> {
     known_materials: HashMap<(MaterialId, Option<String>), usize>,
     known_textures: HashMap<String, usize>,
     /// The attributes and indices of meshes, by their address.
-    known_meshes: HashMap<usize, (usize, Option<usize>, Option<usize>, Option<usize>, usize)>,
+    known_meshes: HashMap<usize, Attributes>,
     /// Materials whose base is the colors of the mesh.
     colored: HashSet<MaterialId>,
     /// Meshes that were made here, kept so that no other one gets their address.
     made: Vec<std::sync::Arc<sr_scene::MeshDesc>>,
+}
+
+/// The accessors of a mesh.
+#[derive(Clone, Copy)]
+struct Attributes {
+    positions: usize,
+    normals: Option<usize>,
+    uvs: Option<usize>,
+    colors: Option<usize>,
+    indices: usize,
 }
 
 /// What a shape emits, as a key.
@@ -136,7 +146,7 @@ impl Writer<'_> {
 
 /// A .glb file: a header, and two chunks that are multiples of four bytes.
 fn packed(mut text: String, bytes: &[u8]) -> Vec<u8> {
-    while text.len() % 4 != 0 {
+    while !text.len().is_multiple_of(4) {
         text.push(' ');
     }
     let word = |length: usize| u32::try_from(length).unwrap_or(u32::MAX).to_le_bytes();

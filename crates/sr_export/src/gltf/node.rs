@@ -6,7 +6,7 @@ use glam::{Mat4, Quat, Vec3};
 use sr_scene::{LightDesc, MeshDesc, Projection, Rgb, ShapeDesc, Span};
 
 use super::json::Json;
-use super::{Writer, emission_key};
+use super::{Attributes, Writer, emission_key};
 use crate::{surfaces, tessellate};
 
 impl Writer<'_> {
@@ -231,7 +231,7 @@ impl Writer<'_> {
                 self.materials.len() - 1
             }
         };
-        let (positions, normals, uvs, colors, indices) = self.attributes(&mesh);
+        let Attributes { positions, normals, uvs, colors, indices } = self.attributes(&mesh);
         let mut attributes = vec![("POSITION", Json::Integer(positions))];
         attributes.extend(normals.map(|at| ("NORMAL", Json::Integer(at))));
         attributes.extend(uvs.map(|at| ("TEXCOORD_0", Json::Integer(at))));
@@ -246,10 +246,7 @@ impl Writer<'_> {
     }
 
     /// The accessors of positions, normals, texture coordinates, colors and corners.
-    fn attributes(
-        &mut self,
-        mesh: &Arc<MeshDesc>,
-    ) -> (usize, Option<usize>, Option<usize>, Option<usize>, usize) {
+    fn attributes(&mut self, mesh: &Arc<MeshDesc>) -> Attributes {
         let key = Arc::as_ptr(mesh).addr();
         if let Some(&known) = self.known_meshes.get(&key) {
             return known;
@@ -265,7 +262,7 @@ impl Writer<'_> {
             self.buffer.vectors(&colors)
         });
         let indices = self.buffer.indices(&mesh.triangles);
-        let known = (positions, normals, uvs, colors, indices);
+        let known = Attributes { positions, normals, uvs, colors, indices };
         self.known_meshes.insert(key, known);
         self.made.push(mesh.clone());
         known
