@@ -25,6 +25,9 @@ struct Converted {
     seconds: f64,
 }
 
+/// The files, the diagnostics, their text for people, and the seconds that it took.
+type Outcome<'py> = (Option<Vec<PathBuf>>, Vec<Fields<'py>>, String, f64);
+
 #[pymethods]
 impl ConvertJob {
     /// Waits at most `seconds`; is it done?
@@ -33,11 +36,7 @@ impl ConvertJob {
     }
 
     /// The files if there was a scene, the diagnostics, their text for people, and the seconds that it took. Once.
-    fn result<'py>(
-        &self,
-        py: Python<'py>,
-        color: bool,
-    ) -> PyResult<(Option<Vec<PathBuf>>, Vec<Fields<'py>>, String, f64)> {
+    fn result<'py>(&self, py: Python<'py>, color: bool) -> PyResult<Outcome<'py>> {
         let Converted { files, diagnostics, seconds } = self.0.take()?;
         let list = diagnostics.list.iter().map(|d| fields(py, d, &diagnostics)).collect::<PyResult<_>>()?;
         Ok((files, list, diagnostics.render(color), seconds))
