@@ -17,6 +17,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from steradian._internal import __version__
+from steradian.convert import Converted, convert
 from steradian.diagnostics import Diagnostic, SceneError, SceneWarning
 from steradian.render import Progress, render
 from steradian.result import Result
@@ -88,6 +89,7 @@ __all__ = [
     "Alias",
     "AreaLight",
     "Cone",
+    "Converted",
     "CosineHemisphere",
     "Density",
     "Diagnostic",
@@ -130,6 +132,7 @@ __all__ = [
     "__version__",
     "adapt",
     "bsdf",
+    "convert",
     "cosine",
     "integrate",
     "light",

@@ -25,6 +25,14 @@ class LoadJob:
     def result(self, color: bool) -> tuple[Scene | None, list[dict[str, Any]], str, float]:
         """The scene if there is one, diagnostics, their text for people, seconds taken. Once."""
 
+class ConvertJob:
+    """A scene being converted, on a thread of its own."""
+
+    def wait(self, seconds: float) -> bool:
+        """Waits at most so long; is it done?"""
+    def result(self, color: bool) -> tuple[list[str] | None, list[dict[str, Any]], str, float]:
+        """The files if there was a scene, diagnostics, their text for people, seconds taken. Once."""
+
 class RenderJob:
     """A render under way, on a thread of its own. Dropping it cancels it."""
 
@@ -84,6 +92,24 @@ def load_file(
 
 def load_dict(dict: Mapping[str, Any], search_paths: Sequence[str], threads: int) -> LoadJob:
     """Starts to load a dictionary."""
+
+def convert_file(
+    path: str,
+    defines: Sequence[tuple[str, str]],
+    out: str,
+    own_plugins: bool,
+    overwrite: bool,
+    threads: int,
+) -> ConvertJob:
+    """Starts to convert a file; ``threads`` of 0 are all."""
+
+def convert_dict(
+    dict: Mapping[str, Any], out: str, own_plugins: bool, overwrite: bool, threads: int
+) -> ConvertJob:
+    """Starts to convert a dictionary."""
+
+def check_target(path: str) -> None:
+    """Raises ValueError unless the name's extension is that of a format to convert to."""
 
 def normalize_strategy(expression: str) -> str:
     """The normal form; ValueError names the place and the remedy."""

@@ -118,8 +118,8 @@ def load_with_diagnostics(
     color: bool = False,
 ) -> Loaded:
     """As :func:`load`, but what is wrong is returned; ``color`` adds ANSI escapes to the report."""
-    texts = {str(name): _as_text(value) for name, value in (defines or {}).items()}
-    folders = _checked_folders(search_paths)
+    texts = {str(name): as_text(value) for name, value in (defines or {}).items()}
+    folders = checked_folders(search_paths)
     if isinstance(source, Mapping):
         name = "<dict>"
         if texts:
@@ -144,7 +144,7 @@ def checked_threads(threads: int | None) -> int:
     return int(threads)
 
 
-def _checked_folders(search_paths: Iterable[str | os.PathLike[str]]) -> list[str]:
+def checked_folders(search_paths: Iterable[str | os.PathLike[str]]) -> list[str]:
     """The folders' names; a name by itself is not a list of names."""
     if isinstance(search_paths, str | os.PathLike):
         raise TypeError(f"search_paths is a list of folders: [{os.fspath(search_paths)!r}]")
@@ -155,7 +155,7 @@ def _checked_folders(search_paths: Iterable[str | os.PathLike[str]]) -> list[str
     return folders
 
 
-def _as_text(value: Any) -> str:
+def as_text(value: Any) -> str:
     """As the file would spell it."""
     if isinstance(value, bool):
         return "true" if value else "false"

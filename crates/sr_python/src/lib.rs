@@ -3,6 +3,7 @@
 //! In: Python objects that `python/steradian` has checked. Out: the same, converted. Work that takes long runs
 //! as a [`job`], outside the interpreter's lock, so that Python can go on answering signals.
 
+mod convert;
 mod image;
 mod integrate;
 mod job;
@@ -22,11 +23,15 @@ fn _internal(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("MAX_THREADS", job::MAX_THREADS)?;
     module.add_class::<scene::Scene>()?;
     module.add_class::<load::LoadJob>()?;
+    module.add_class::<convert::ConvertJob>()?;
     module.add_class::<render::RenderJob>()?;
     module.add_class::<image::Film>()?;
     module.add_class::<image::Image>()?;
     module.add_function(wrap_pyfunction!(load::load_file, module)?)?;
     module.add_function(wrap_pyfunction!(load::load_dict, module)?)?;
+    module.add_function(wrap_pyfunction!(convert::convert_file, module)?)?;
+    module.add_function(wrap_pyfunction!(convert::convert_dict, module)?)?;
+    module.add_function(wrap_pyfunction!(convert::check_target, module)?)?;
     module.add_function(wrap_pyfunction!(names::normalize_strategy, module)?)?;
     module.add_function(wrap_pyfunction!(names::normalize_sampler, module)?)?;
     module.add_function(wrap_pyfunction!(names::tones, module)?)?;

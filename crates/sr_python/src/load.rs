@@ -24,7 +24,7 @@ struct Loaded {
 }
 
 /// What a diagnostic says, by name.
-type Fields<'py> = Bound<'py, PyDict>;
+pub type Fields<'py> = Bound<'py, PyDict>;
 
 #[pymethods]
 impl LoadJob {
@@ -94,7 +94,8 @@ fn compiled(desc: Option<SceneDesc>, mut diagnostics: Diagnostics, start: Instan
     Loaded { scene, diagnostics, seconds: start.elapsed().as_secs_f64() }
 }
 
-fn fields<'py>(py: Python<'py>, diagnostic: &Diagnostic, all: &Diagnostics) -> PyResult<Fields<'py>> {
+/// A diagnostic, by the names of its parts.
+pub fn fields<'py>(py: Python<'py>, diagnostic: &Diagnostic, all: &Diagnostics) -> PyResult<Fields<'py>> {
     let Diagnostic { severity, code, message, span, hint, consequence } = diagnostic;
     let has_place = span.bytes.end > 0;
     let (line, column) = if has_place { all.sources.line_column(span) } else { (0, 0) };

@@ -41,7 +41,8 @@ fn display(exposure: f32, tone: &str) -> PyResult<Display> {
     Ok(Display { exposure, tone: tone.parse().map_err(value_error)? })
 }
 
-fn output_error(error: OutputError) -> PyErr {
+/// As Python raises it.
+pub fn output_error(error: OutputError) -> PyErr {
     match error {
         OutputError::UnknownFormat { .. } => value_error(error),
         // The kind of error decides Python's class, such as PermissionError; the message is ours.

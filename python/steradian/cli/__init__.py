@@ -12,6 +12,7 @@ from collections.abc import Sequence
 
 from steradian.cli.arguments import parse
 from steradian.cli.article import article
+from steradian.cli.convert import convert
 from steradian.cli.info import info
 from steradian.cli.render import render
 from steradian.cli.verify import verify
@@ -38,7 +39,8 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _run(argv: Sequence[str] | None) -> int:
     arguments = parse(argv)
-    command = {"render": render, "info": info, "article": article, "verify": verify}[arguments.command]
+    commands = {"render": render, "info": info, "convert": convert, "article": article, "verify": verify}
+    command = commands[arguments.command]
     try:
         return command(arguments)
     except BrokenPipeError:

@@ -21,8 +21,17 @@ examples:
   steradian render scene.xml --strategy "mis(bsdf, light, heuristic=balance)" --json
   steradian render scene.xml -D res=64 --search-path ../textures   what it names and lacks
   steradian info scene.xml
+  steradian convert scene.xml scene.pbrt                         for another renderer
   steradian article --open                                       learn how it works
   steradian verify                                               check every building block
+"""
+
+CONVERT_EXAMPLES = """\
+examples:
+  steradian convert scene.xml scene.pbrt           to pbrt-v4, meshes and images in the folder scene/
+  steradian convert kitchen.pbrt kitchen.xml       to Mitsuba 3
+  steradian convert scene.xml scene.glb            to glTF 2.0, all in one file
+  steradian convert robot.gltf robot.xml --own-plugins --force
 """
 
 VERIFY_EXAMPLES = """\
@@ -70,6 +79,7 @@ def parse(argv: Sequence[str] | None = None) -> argparse.Namespace:
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     _add_render(commands)
     _add_info(commands)
+    _add_convert(commands)
     _add_article(commands)
     _add_verify(commands)
     return parser.parse_args(argv)
@@ -138,6 +148,32 @@ def _add_info(commands: argparse._SubParsersAction[_Parser]) -> None:
     )
     _add_scene(parser)
     parser.add_argument("--json", action="store_true", help="print one JSON object on standard output")
+
+
+def _add_convert(commands: argparse._SubParsersAction[_Parser]) -> None:
+    parser = commands.add_parser(
+        "convert",
+        help="write a scene in the format of another renderer",
+        description="Writes SCENE as OUT, in the format that its name ends with: .xml (Mitsuba 3), "
+        ".pbrt (pbrt-v4), .gltf or .glb (glTF 2.0). Meshes and images go to a folder beside it. "
+        "What the format cannot say is said, with what is written instead. Succeeds only if all was written.",
+        epilog=CONVERT_EXAMPLES,
+        formatter_class=_Wrapped,
+        allow_abbrev=False,
+    )
+    _add_scene(parser)
+    add = parser.add_argument
+    add("output", metavar="OUT", help="the file to write; its folder has to be there")
+    add(
+        "--own-plugins",
+        action="store_true",
+        help="XML may name what Steradian has and Mitsuba has not, which Mitsuba does not read then; "
+        "otherwise the nearest that Mitsuba has is written",
+    )
+    add("--force", action="store_true", help="overwrite files, but never those that the scene is read from")
+    add("--threads", metavar="N", type=_integer(1, _internal.MAX_THREADS), help="threads (default: all)")
+    add("--quiet", action="store_true", help="no summary; warnings and errors remain")
+    add("--json", action="store_true", help="print one JSON object on standard output instead of the summary")
 
 
 def _add_article(commands: argparse._SubParsersAction[_Parser]) -> None:

@@ -8,6 +8,7 @@
 //! - [`Sky`] and [`Sun`]: those of a clear day.
 //! - [`PointLight`], [`SpotLight`], [`DirectionalLight`], [`Projector`], [`GoniometricLight`], [`ProfileLight`]: deltas,
 //!   which only light sampling can find.
+//! - [`Probe`]: one light by itself, as an image of it shows it.
 //! - [`Lights`]: all of them, and the choice among them.
 //!
 //! Invariant: `pdf` is the density with which `sample` draws a direction, lights behind others included.
@@ -20,6 +21,7 @@ mod environment;
 mod list;
 mod point;
 mod portal;
+mod probe;
 mod projector;
 mod seen_from;
 mod sky;
@@ -36,9 +38,11 @@ pub use environment::{ConstantEnvironment, Environment, EnvironmentSampling};
 pub(crate) use list::{Delta, Extended};
 pub use list::{LightId, Lights};
 pub use point::{DirectionalLight, PointLight, SpotLight};
+pub use probe::Probe;
 pub use projector::{GoniometricLight, ProfileLight, Projector};
 pub use seen_from::SeenFrom;
 pub use sky::{Sky, Sun};
+pub use sphere_image::sphere_direction;
 
 /// A sampled direction towards a light with an extent. What arrives along it, [`Lights::radiance`] tells: it may cost
 /// a look at a picture, which a light that turns out to be hidden is not worth.

@@ -168,13 +168,7 @@ impl SphereImage {
 
     /// The direction at a point of the image.
     pub fn direction(&self, uv: Vec2) -> Vec3 {
-        match self.mapping {
-            SphereMapping::LatLong => {
-                let (theta, phi) = (unit_circle(0.5 * uv.y), unit_circle(uv.x));
-                Vec3::new(theta.y * phi.y, theta.x, -theta.y * phi.x)
-            }
-            SphereMapping::EqualAreaOctahedral => octahedral_direction(uv),
-        }
+        sphere_direction(self.mapping, uv)
     }
 
     /// A density over the image as one over directions, at a direction, in sr⁻¹: 0 where it has none.
@@ -187,6 +181,17 @@ impl SphereImage {
             }
             SphereMapping::EqualAreaOctahedral => pdf_uv / (2.0 * TAU),
         }
+    }
+}
+
+/// The direction at a point of an image of all directions, v = 0 being its top row.
+pub fn sphere_direction(mapping: SphereMapping, uv: Vec2) -> Vec3 {
+    match mapping {
+        SphereMapping::LatLong => {
+            let (theta, phi) = (unit_circle(0.5 * uv.y), unit_circle(uv.x));
+            Vec3::new(theta.y * phi.y, theta.x, -theta.y * phi.x)
+        }
+        SphereMapping::EqualAreaOctahedral => octahedral_direction(uv),
     }
 }
 

@@ -184,7 +184,7 @@ impl Materials {
         let (constant, is_textured) = constants(&sources, opacity);
         let (parts, has_holes) = (0..0, false);
         self.sides.push(Side {
-            kind,
+            kind: Some(kind),
             sources,
             opacity,
             constant,
@@ -229,7 +229,7 @@ impl Materials {
         let nothing = Sources::new(&[], &[]);
         let opacity = ScalarInput::Constant(1.0);
         self.sides.push(Side {
-            kind: 0,
+            kind: None,
             sources: nothing,
             opacity,
             constant: constants(&nothing, opacity).0,

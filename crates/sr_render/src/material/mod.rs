@@ -54,12 +54,13 @@ pub(crate) struct Face {
 /// One side of a surface: a model of a common kind, perhaps with holes, or parts.
 #[derive(Clone, Debug)]
 pub(crate) struct Side {
-    kind: u32,
+    /// Of a model of a common kind; `None` for parts.
+    kind: Option<u32>,
     sources: Sources,
     opacity: ScalarInput,
     /// All of them, if none is textured.
     constant: Inputs,
-    /// Which parts it has; empty if it is one model of a common kind.
+    /// Which parts it has, if that is what it has; perhaps none, where all is a hole.
     parts: Range<usize>,
     /// Do the parts leave holes?
     has_holes: bool,
@@ -120,11 +121,9 @@ impl Materials {
     /// The scattering model of one side.
     #[inline]
     pub(crate) fn bsdf(&self, side: &Side, place: &Place) -> AnyBsdf<'_> {
-        if !side.parts.is_empty() {
-            return self.blend(side, place);
-        }
+        let Some(kind) = side.kind else { return self.blend(side, place) };
         let inputs = side.inputs(&place.at, place.textures);
-        let model = self.with_recipe(side.kind, MakeAny { inputs });
+        let model = self.with_recipe(kind, MakeAny { inputs });
         match inputs.opacity {
             1.0 => AnyBsdf::Solid(model),
             opacity => AnyBsdf::Masked(Mask::new(opacity, model)),

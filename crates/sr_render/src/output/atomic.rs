@@ -24,7 +24,10 @@ impl Drop for Temporary {
 }
 
 /// Lets `write` fill a temporary file beside `path`, then renames it.
-pub(super) fn write_then_rename(
+///
+/// # Errors
+/// If the system refuses; what was at `path` is still there.
+pub fn write_then_rename(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
 ) -> Result<(), OutputError> {

@@ -16,6 +16,7 @@ use thiserror::Error;
 
 use crate::image::RenderedImage;
 
+pub use self::atomic::write_then_rename;
 pub use self::exr::write_exr;
 pub use self::png::{encode_png, write_png};
 pub use metadata::{Metadata, Value};

@@ -1,0 +1,49 @@
+//! What several formats ask of materials.
+
+use sr_scene::{ColorInput, MaterialDesc, MaterialId, Rgb, ScalarInput, SceneDesc, TextureId};
+
+/// The reflectance at a right angle of a metal of the complex index η + i k.
+pub fn normal_reflectance(eta: Rgb, k: Rgb) -> Rgb {
+    let k2 = k * k;
+    let (less, more) = (eta - 1.0, eta + 1.0);
+    (less * less + k2) / (more * more + k2)
+}
+
+/// Does light pass through a material, holes not counted?
+pub fn transmits(scene: &SceneDesc, id: MaterialId) -> bool {
+    match scene.materials.get(id.0 as usize) {
+        Some(
+            MaterialDesc::Dielectric { .. }
+            | MaterialDesc::ThinDielectric { .. }
+            | MaterialDesc::RoughDielectric { .. }
+            | MaterialDesc::DiffuseTransmission { .. }
+            | MaterialDesc::PrincipledThin(_)
+            | MaterialDesc::Mask { .. },
+        ) => true,
+        Some(MaterialDesc::Principled(p)) => p.spec_trans != ScalarInput::Constant(0.0),
+        Some(MaterialDesc::MetallicRoughness(m)) => m.transmission != ScalarInput::Constant(0.0),
+        Some(other) => other.materials().into_iter().any(|inner| transmits(scene, inner)),
+        None => false,
+    }
+}
+
+/// Does a material, or what it is made of, have a texture?
+pub fn has_texture(scene: &SceneDesc, id: MaterialId) -> bool {
+    let Some(desc) = scene.materials.get(id.0 as usize) else { return false };
+    !desc.textures().is_empty() || desc.materials().into_iter().any(|inner| has_texture(scene, inner))
+}
+
+/// Is it this number everywhere?
+pub fn is(input: ScalarInput, value: f32) -> bool {
+    input == ScalarInput::Constant(value)
+}
+
+/// Is it white everywhere?
+pub fn is_white(input: ColorInput) -> bool {
+    input == ColorInput::Constant(Rgb::ONE)
+}
+
+/// The texture of a number.
+pub fn texture_of(input: ScalarInput) -> Option<TextureId> {
+    input.into()
+}
