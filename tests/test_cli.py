@@ -124,6 +124,16 @@ def test_warnings_go_to_standard_error_and_the_image_is_written(tmp_path):
     assert "mitsuba::unknown-property" in [d["code"] for d in value["diagnostics"]]
 
 
+def test_strict_fails_on_warnings(cornell_path, tmp_path):
+    (tmp_path / "scene.xml").write_text(WARNED)
+    for command in (["render", *FAST], ["info"], ["convert", "--own-plugins", "out.xml"]):
+        name, *rest = command
+        done = run(name, "scene.xml", *rest, "--strict", cwd=tmp_path, check=1)
+        assert "and --strict takes none" in done.stderr
+    assert not (tmp_path / "scene.exr").exists()
+    run("info", cornell_path, "--strict", cwd=tmp_path, check=0)
+
+
 def test_help_and_version(tmp_path):
     assert "0.5 cosine + 0.5 light" in run("render", "--help", cwd=tmp_path, check=0).stdout
     assert run("--version", cwd=tmp_path, check=0).stdout.startswith("steradian ")

@@ -20,6 +20,24 @@ def same_bits(a, b):
     )
 
 
+def test_what_is_all_hole_is_not_there():
+    """Masks of opacity 0 over any model, common or not, alone in the scene."""
+    for inner in ({"type": "diffuse"}, {"type": "principled"}, {"type": "metallicroughness"}):
+        scene = sr.load(
+            {
+                "type": "scene",
+                "camera": {
+                    "type": "perspective",
+                    "fov": 40,
+                    "to_world": sr.Transform.look_at((0, 0, 5), (0, 0, 0)),
+                },
+                "sky": {"type": "constant"},
+                "ball": {"type": "sphere", "bsdf": {"type": "mask", "opacity": 0.0, "inner": inner}},
+            }
+        )
+        assert np.all(sr.render(scene, spp=4, size=(8, 8)).image == 1)
+
+
 def test_a_result_has_arrays_errors_and_its_settings(cornell):
     result = sr.render(cornell, spp=16, seed=5, strategy=0.5 * sr.cosine + 0.5 * sr.light, **SMALL)
     for name in ("image", "stderr", "albedo", "normal"):

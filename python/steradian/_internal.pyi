@@ -96,6 +96,7 @@ def load_dict(dict: Mapping[str, Any], search_paths: Sequence[str], threads: int
 def convert_file(
     path: str,
     defines: Sequence[tuple[str, str]],
+    search_paths: Sequence[str],
     out: str,
     own_plugins: bool,
     overwrite: bool,
@@ -104,7 +105,12 @@ def convert_file(
     """Starts to convert a file; ``threads`` of 0 are all."""
 
 def convert_dict(
-    dict: Mapping[str, Any], out: str, own_plugins: bool, overwrite: bool, threads: int
+    dict: Mapping[str, Any],
+    search_paths: Sequence[str],
+    out: str,
+    own_plugins: bool,
+    overwrite: bool,
+    threads: int,
 ) -> ConvertJob:
     """Starts to convert a dictionary."""
 

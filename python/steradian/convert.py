@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from steradian import _internal, _jobs
 from steradian.diagnostics import Diagnostic, SceneError, SceneWarning
-from steradian.scene import as_text, checked_threads
+from steradian.scene import as_text, checked_folders, checked_threads
 
 
 @dataclass(frozen=True)
@@ -41,6 +41,7 @@ def convert(
     out: str | os.PathLike[str],
     *,
     defines: Mapping[str, Any] | None = None,
+    search_paths: Iterable[str | os.PathLike[str]] = (),
     own_plugins: bool = False,
     overwrite: bool = False,
     threads: int | None = None,
@@ -54,6 +55,7 @@ def convert(
         out: a file whose name ends in ``.xml`` (Mitsuba 3), ``.pbrt`` (pbrt-v4), ``.gltf`` or ``.glb``
             (glTF 2.0).
         defines: values for the file's ``$name``, over its own defaults.
+        search_paths: folders for files that are neither beside the scene nor where it says.
         own_plugins: may XML name what Steradian has and Mitsuba has not? Then Mitsuba does not read it;
             otherwise the nearest that Mitsuba has is written.
         overwrite: may files that are there be replaced? Those that the scene is read from never are.
@@ -68,7 +70,13 @@ def convert(
         ValueError: if the format is not known, or a file would be replaced that the scene is read from.
     """
     converted, found, report = convert_with_diagnostics(
-        source, out, defines=defines, own_plugins=own_plugins, overwrite=overwrite, threads=threads
+        source,
+        out,
+        defines=defines,
+        search_paths=search_paths,
+        own_plugins=own_plugins,
+        overwrite=overwrite,
+        threads=threads,
     )
     if converted is None:
         raise SceneError(report.strip(), found)
@@ -82,6 +90,7 @@ def convert_with_diagnostics(
     out: str | os.PathLike[str],
     *,
     defines: Mapping[str, Any] | None = None,
+    search_paths: Iterable[str | os.PathLike[str]] = (),
     own_plugins: bool = False,
     overwrite: bool = False,
     threads: int | None = None,
@@ -90,14 +99,16 @@ def convert_with_diagnostics(
     """As :func:`convert`, but what is wrong with a scene is returned, with its text for people."""
     texts = {str(name): as_text(value) for name, value in (defines or {}).items()}
     threads = checked_threads(threads)
+    folders = checked_folders(search_paths)
     path = os.fspath(out)
     if isinstance(source, Mapping):
         if texts:
             raise ValueError("a dictionary has no $names: put the values in, instead of giving defines")
-        job = _internal.convert_dict(dict(source), path, own_plugins, overwrite, threads)
+        job = _internal.convert_dict(dict(source), folders, path, own_plugins, overwrite, threads)
     else:
         name = os.fspath(source)
-        job = _internal.convert_file(name, list(texts.items()), path, own_plugins, overwrite, threads)
+        pairs = list(texts.items())
+        job = _internal.convert_file(name, pairs, folders, path, own_plugins, overwrite, threads)
     _jobs.wait(job)
     files, found, report, seconds = job.result(color)
     diagnostics = tuple(Diagnostic(**fields) for fields in found)

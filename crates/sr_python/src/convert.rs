@@ -55,6 +55,7 @@ struct Request {
 pub fn convert_file(
     path: PathBuf,
     defines: Vec<(String, String)>,
+    search_paths: Vec<PathBuf>,
     out: PathBuf,
     own_plugins: bool,
     overwrite: bool,
@@ -64,17 +65,17 @@ pub fn convert_file(
     let request = Request { out, own_plugins, overwrite };
     let job = Job::start(threads, move || {
         let start = Instant::now();
-        let options = LoadOptions { defines, ..LoadOptions::default() };
-        let (scene, diagnostics) = sr_import::load(&path, &options);
+        let (scene, diagnostics) = sr_import::load(&path, &LoadOptions { defines, search_paths });
         written(scene, diagnostics, &request, start)
     })?;
     Ok(ConvertJob(job))
 }
 
-/// Starts to convert a dictionary; files that it names are looked for in the current folder.
+/// Starts to convert a dictionary; files that it names are looked for in the current folder, then in `search_paths`.
 #[pyfunction]
 pub fn convert_dict(
     dict: &Bound<'_, PyDict>,
+    search_paths: Vec<PathBuf>,
     out: PathBuf,
     own_plugins: bool,
     overwrite: bool,
@@ -83,7 +84,8 @@ pub fn convert_dict(
     target_of(&out)?;
     let start = Instant::now();
     let (node, mut diagnostics) = node::from_dict(dict)?;
-    let origin = Origin { legacy: false, directories: vec![PathBuf::new()] };
+    let directories = std::iter::once(PathBuf::new()).chain(search_paths).collect();
+    let origin = Origin { legacy: false, directories };
     let request = Request { out, own_plugins, overwrite };
     let job = Job::start(threads, move || {
         let scene = match diagnostics.has_errors() {

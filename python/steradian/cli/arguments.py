@@ -272,6 +272,7 @@ def _add_scene(parser: argparse.ArgumentParser) -> None:
         type=_folder,
         help="where to look for files that are neither beside the scene nor where it says; may be repeated",
     )
+    parser.add_argument("--strict", action="store_true", help="fail on warnings about the scene, too")
 
 
 def _integer(low: int, high: int) -> Callable[[str], int]:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from steradian import _internal
 from steradian.cli import outputs
+from steradian.cli.loading import fails_strictly
 from steradian.cli.report import print_json
 from steradian.convert import Converted, convert_with_diagnostics
 
@@ -29,6 +30,7 @@ def convert(arguments: argparse.Namespace) -> int:
             arguments.scene,
             out,
             defines=dict(arguments.define),
+            search_paths=arguments.search_path,
             own_plugins=arguments.own_plugins,
             overwrite=arguments.force,
             threads=arguments.threads,
@@ -38,7 +40,7 @@ def convert(arguments: argparse.Namespace) -> int:
         raise ValueError(f"{error} with --force") from None
     if report:
         print(report.rstrip("\n"), file=sys.stderr)
-    if converted is None:
+    if converted is None or fails_strictly(arguments, diagnostics):
         return FAILED
     if arguments.json:
         values = {

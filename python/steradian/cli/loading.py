@@ -6,6 +6,7 @@ import argparse
 import os
 import sys
 
+from steradian.diagnostics import Diagnostic
 from steradian.scene import Scene, load_with_diagnostics
 
 
@@ -20,4 +21,14 @@ def load(arguments: argparse.Namespace) -> Scene | None:
     )
     if loaded.report:
         print(loaded.report.rstrip("\n"), file=sys.stderr)
-    return loaded.scene
+    return None if fails_strictly(arguments, loaded.diagnostics) else loaded.scene
+
+
+def fails_strictly(arguments: argparse.Namespace, diagnostics: tuple[Diagnostic, ...]) -> bool:
+    """Are there warnings, and does ``--strict`` take them for errors? Says so."""
+    warnings = sum(diagnostic.severity == "warning" for diagnostic in diagnostics)
+    if not (arguments.strict and warnings):
+        return False
+    count = "1 warning" if warnings == 1 else f"{warnings} warnings"
+    print(f"{count}, and --strict takes none", file=sys.stderr)
+    return True

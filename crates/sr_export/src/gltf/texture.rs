@@ -61,10 +61,8 @@ impl Writer<'_> {
             Some(place) if transform(place.to_uv).is_some() => place,
             _ => return self.baked(&key, &parts, channels, span),
         };
-        let is_float = |part: &Placed| matches!(part.image.pixels, Pixels::F32 { .. });
-        if placed.iter().flatten().any(is_float) {
-            let message = "glTF's images have eight bits, from 0 to 1";
-            self.notes.push("convert::eight-bits", span, message, "values are rounded, and cut at 1");
+        if placed.iter().flatten().any(|part| matches!(part.image.pixels, Pixels::F32 { .. })) {
+            self.say_eight_bits(span);
         }
         let texels = |at: usize| -> Vec<Rgb> {
             let part = placed.get(at).and_then(Option::as_ref);
@@ -96,6 +94,11 @@ impl Writer<'_> {
         }
     }
 
+    fn say_eight_bits(&mut self, span: &Span) {
+        let message = "glTF's images have eight bits, from 0 to 1";
+        self.notes.push("convert::eight-bits", span, message, "values are rounded, and cut at 1");
+    }
+
     fn baked(&mut self, key: &str, parts: &[TextureId], channels: Channels, span: &Span) -> Json {
         let first: Vec<_> = parts.iter().map(|part| self.baker.over_unit_square(*part, |c| c)).collect();
         let (width, height) = first
@@ -114,6 +117,9 @@ impl Writer<'_> {
                 .collect()
         };
         let colors: Vec<Vec<Rgb>> = first.iter().map(resized).collect();
+        if colors.iter().flatten().any(|color| color.max_element() > 1.0) {
+            self.say_eight_bits(span);
+        }
         let filter = first.first().map_or(Filter::Bilinear, |baked| baked.filter);
         let message = "glTF's textures are images";
         let instead =
