@@ -20,6 +20,7 @@ examples:
   steradian render scene.xml --strategy "0.5 cosine + 0.5 light"
   steradian render scene.xml --strategy "mis(bsdf, light, heuristic=balance)" --json
   steradian render scene.xml -D res=64 --search-path ../textures   what it names and lacks
+  steradian render model.glb --environment sky.hdr               lit by an image of the sky
   steradian info scene.xml
   steradian article --open                                       learn how it works
   steradian verify                                               check every building block
@@ -218,7 +219,9 @@ def _probability(text: str) -> float:
 
 
 def _add_scene(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("scene", metavar="SCENE", help="a Mitsuba XML, a pbrt-v4 or a glTF 2.0 file")
+    parser.add_argument(
+        "scene", metavar="SCENE", help="a Mitsuba XML, pbrt-v4 or glTF 2.0 file, or an OBJ, PLY or STL mesh"
+    )
     parser.add_argument(
         "--define",
         "-D",
@@ -235,6 +238,11 @@ def _add_scene(parser: argparse.ArgumentParser) -> None:
         default=[],
         type=_folder,
         help="where to look for files that are neither beside the scene nor where it says; may be repeated",
+    )
+    parser.add_argument(
+        "--environment",
+        metavar="FILE",
+        help="an image of latitude and longitude, .hdr or .exr, +Y up, to put around the scene",
     )
 
 
