@@ -86,11 +86,17 @@ class Image:
         """Mean standard error over mean, of luminance."""
 
 def load_file(
-    path: str, defines: Sequence[tuple[str, str]], search_paths: Sequence[str], threads: int
+    path: str,
+    defines: Sequence[tuple[str, str]],
+    search_paths: Sequence[str],
+    environment: str | None,
+    threads: int,
 ) -> LoadJob:
     """Starts to load a file; ``threads`` of 0 are all."""
 
-def load_dict(dict: Mapping[str, Any], search_paths: Sequence[str], threads: int) -> LoadJob:
+def load_dict(
+    dict: Mapping[str, Any], search_paths: Sequence[str], environment: str | None, threads: int
+) -> LoadJob:
     """Starts to load a dictionary."""
 
 def convert_file(

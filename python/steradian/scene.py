@@ -76,13 +76,14 @@ def load(
     *,
     defines: Mapping[str, Any] | None = None,
     search_paths: Iterable[str | os.PathLike[str]] = (),
+    environment: str | os.PathLike[str] | None = None,
     threads: int | None = None,
 ) -> Scene:
     """Loads a scene.
 
     Args:
-        source: a Mitsuba XML file (0.5, 2 or 3), a pbrt-v4 file, or a dictionary in the manner of Mitsuba's
-            ``load_dict``:
+        source: a Mitsuba XML file (0.5, 2 or 3), a pbrt-v4 or glTF 2.0 file, a mesh (OBJ, PLY, STL), or a
+            dictionary in the manner of Mitsuba's ``load_dict``:
             ``{"type": "scene", "camera": {"type": "perspective", ...}, "box": {"type": "cube", ...}}``.
             Placements are 4x4 arrays or :class:`steradian.Transform`. A mesh may be given as
             ``{"type": "mesh", "vertices": (n, 3), "faces": (m, 3), "normals": (n, 3), "uvs": (n, 2)}``, the
@@ -91,6 +92,9 @@ def load(
         defines: values for the file's ``$name``, over its own defaults.
         search_paths: folders for files that are neither beside the scene (for a dictionary, in the current
             folder) nor where it says, in this order.
+        environment: an image of latitude and longitude (HDR or EXR), +Y up, put around the scene, as
+            Mitsuba's ``envmap``; then no default light is needed. A scene with an environment of its own is
+            lit by both, which is said.
         threads: threads to decode and compile with; all available cores unless given.
 
     Warns:
@@ -101,7 +105,9 @@ def load(
         NotADirectoryError: if one of ``search_paths`` is no folder.
         KeyboardInterrupt: on Ctrl-C, while loading.
     """
-    loaded = load_with_diagnostics(source, defines=defines, search_paths=search_paths, threads=threads)
+    loaded = load_with_diagnostics(
+        source, defines=defines, search_paths=search_paths, environment=environment, threads=threads
+    )
     if loaded.scene is None:
         raise SceneError(loaded.report.strip(), loaded.diagnostics)
     for diagnostic in loaded.diagnostics:
@@ -114,20 +120,22 @@ def load_with_diagnostics(
     *,
     defines: Mapping[str, Any] | None = None,
     search_paths: Iterable[str | os.PathLike[str]] = (),
+    environment: str | os.PathLike[str] | None = None,
     threads: int | None = None,
     color: bool = False,
 ) -> Loaded:
     """As :func:`load`, but what is wrong is returned; ``color`` adds ANSI escapes to the report."""
     texts = {str(name): as_text(value) for name, value in (defines or {}).items()}
     folders = checked_folders(search_paths)
+    around = None if environment is None else os.fspath(environment)
     if isinstance(source, Mapping):
         name = "<dict>"
         if texts:
             raise ValueError("a dictionary has no $names: put the values in, instead of giving defines")
-        job = _internal.load_dict(dict(source), folders, checked_threads(threads))
+        job = _internal.load_dict(dict(source), folders, around, checked_threads(threads))
     else:
         name = os.fspath(source)
-        job = _internal.load_file(name, list(texts.items()), folders, checked_threads(threads))
+        job = _internal.load_file(name, list(texts.items()), folders, around, checked_threads(threads))
     _jobs.wait(job)
     compiled, found, report, seconds = job.result(color)
     diagnostics = tuple(Diagnostic(**fields) for fields in found)

@@ -1,9 +1,10 @@
 //! Scene files of other renderers to scene descriptions.
 //!
-//! In: Mitsuba XML (0.5, 0.6, 2.x and 3.x), pbrt-v4 files, glTF 2.0 (.gltf and .glb), or a tree of [`Node`]s that Python made of a dict. Out: a
+//! In: Mitsuba XML (0.5, 0.6, 2.x and 3.x), pbrt-v4 files, glTF 2.0 (.gltf and .glb), OBJ, PLY, STL, or a tree of [`Node`]s that Python made of a dict. Out: a
 //! [`SceneDesc`] and [`Diagnostics`]. The description is there exactly if no diagnostic is an error.
 //!
 //! - `mitsuba`, `pbrt`, `gltf`: one folder for each format: text to the calls of an `Assembly`. `format`: which one it is.
+//! - `mesh_file`: a mesh as a scene of its own.
 //! - `assembly`: what all formats share: a description as it grows.
 //! - `mesh`, `images`, `jpeg`, `ies`: the files that scenes name, read in parallel, each once.
 //!
@@ -46,26 +47,29 @@ pub struct LoadOptions {
     pub defines: Vec<(String, String)>,
     /// Where files are looked for that are neither beside the scene nor where it says, in this order.
     pub search_paths: Vec<PathBuf>,
+    /// An image of latitude and longitude, +Y up, that is put around the scene.
+    pub environment: Option<PathBuf>,
 }
 
 /// Loads a scene file.
 pub fn load(path: &Path, options: &LoadOptions) -> (Option<SceneDesc>, Diagnostics) {
     let mut diagnostics = Diagnostics::default();
     let name = path.display().to_string();
-    if let Some(format) = mesh_file::format(path) {
-        let scene = mesh_file::load(path, format, &mut diagnostics);
+    if let Some(kind) = mesh_file::Kind::of(path) {
+        let scene = mesh_file::load(path, kind, options, &mut diagnostics);
         return (scene, diagnostics);
     }
     let directory = path.parent().unwrap_or(Path::new("")).to_owned();
     let directories = files::Directories::new(directory, &options.search_paths);
+    let environment = options.environment.clone();
     let loaded = match format::Format::of_name(&name) {
         format::Format::Pbrt => pbrt::Text::read(path)
-            .map(|text| pbrt::load(&name, text, directories.into_list(), &mut diagnostics)),
+            .map(|text| pbrt::load(&name, text, directories.into_list(), environment, &mut diagnostics)),
         format::Format::Mitsuba => files::read_text(path).map(|text| {
             load_content(&name, text.into_bytes().into(), directories, options, &mut diagnostics)
         }),
         format::Format::Gltf => files::read(path, files::MAX_FILE_BYTES)
-            .map(|bytes| gltf::load(&name, bytes, directories.into_list(), &mut diagnostics)),
+            .map(|bytes| gltf::load(&name, bytes, directories.into_list(), environment, &mut diagnostics)),
     };
     match loaded {
         Ok(scene) => (scene, diagnostics),
@@ -108,8 +112,9 @@ fn load_content(
     options: &LoadOptions,
     diagnostics: &mut Diagnostics,
 ) -> Option<SceneDesc> {
+    let environment = options.environment.clone();
     if format::Format::of_name(name) == format::Format::Gltf {
-        return gltf::load(name, content.into_owned(), directories.into_list(), diagnostics);
+        return gltf::load(name, content.into_owned(), directories.into_list(), environment, diagnostics);
     }
     // Text that is UTF-8 already is not copied.
     let text = match content {
@@ -119,13 +124,14 @@ fn load_content(
             .into(),
     };
     match format::Format::of_text(name, &text) {
-        format::Format::Mitsuba => mitsuba::load(name, &text, directories, &options.defines, diagnostics),
+        format::Format::Mitsuba => mitsuba::load(name, &text, directories, options, diagnostics),
         format::Format::Pbrt => {
             let text = pbrt::Text::of(text.into_owned());
-            pbrt::load(name, text, directories.into_list(), diagnostics)
+            pbrt::load(name, text, directories.into_list(), environment, diagnostics)
         }
         format::Format::Gltf => {
-            gltf::load(name, text.into_owned().into_bytes(), directories.into_list(), diagnostics)
+            let bytes = text.into_owned().into_bytes();
+            gltf::load(name, bytes, directories.into_list(), environment, diagnostics)
         }
     }
 }

@@ -205,7 +205,7 @@ fn the_page_has_the_list_of_extensions() {
 fn a_mesh_file_is_a_scene() {
     let square = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/pbrt/square.ply");
     let (scene, diagnostics) = load(&square, &LoadOptions::default());
-    assert_eq!(codes(&diagnostics), ["scene::no-materials", "scene::no-light", "scene::no-camera"]);
+    assert_eq!(codes(&diagnostics), ["scene::no-light", "scene::no-camera"]);
     assert_eq!(scene.unwrap().shapes.len(), 1);
     let (scene, diagnostics) = load(Path::new("none.obj"), &LoadOptions::default());
     assert!(scene.is_none() && codes(&diagnostics).contains(&"file::bad-mesh"));

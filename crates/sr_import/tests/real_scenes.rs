@@ -117,7 +117,10 @@ fn the_suite_of_mitsuba_loads_but_for_parts_and_what_is_missing() {
     for file in &files {
         let asks_for_spp = std::fs::read_to_string(file).expect("a readable file").contains("$spp");
         let defines = if asks_for_spp { vec![("spp".to_owned(), "4".to_owned())] } else { Vec::new() };
-        let (scene, diagnostics) = load(file, &LoadOptions { defines, search_paths: search_paths.to_vec() });
+        let (scene, diagnostics) = load(
+            file,
+            &LoadOptions { defines, search_paths: search_paths.to_vec(), ..LoadOptions::default() },
+        );
         assert_eq!(scene.is_none(), diagnostics.has_errors(), "{}", file.display());
         assert!(!diagnostics.render(true).is_empty() || diagnostics.list.is_empty());
         if scene.is_none() {

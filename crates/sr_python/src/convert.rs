@@ -65,7 +65,8 @@ pub fn convert_file(
     let request = Request { out, own_plugins, overwrite };
     let job = Job::start(threads, move || {
         let start = Instant::now();
-        let (scene, diagnostics) = sr_import::load(&path, &LoadOptions { defines, search_paths });
+        let options = LoadOptions { defines, search_paths, environment: None };
+        let (scene, diagnostics) = sr_import::load(&path, &options);
         written(scene, diagnostics, &request, start)
     })?;
     Ok(ConvertJob(job))
@@ -85,7 +86,7 @@ pub fn convert_dict(
     let start = Instant::now();
     let (node, mut diagnostics) = node::from_dict(dict)?;
     let directories = std::iter::once(PathBuf::new()).chain(search_paths).collect();
-    let origin = Origin { legacy: false, directories };
+    let origin = Origin { legacy: false, directories, environment: None };
     let request = Request { out, own_plugins, overwrite };
     let job = Job::start(threads, move || {
         let scene = match diagnostics.has_errors() {

@@ -45,17 +45,19 @@ impl LoadJob {
     }
 }
 
-/// Starts to load a file; `defines` override the file's own defaults; `threads` of 0 are all.
+/// Starts to load a file; `defines` override the file's own defaults; `environment` is an image to be put around the scene;
+/// `threads` of 0 are all.
 #[pyfunction]
 pub fn load_file(
     path: PathBuf,
     defines: Vec<(String, String)>,
     search_paths: Vec<PathBuf>,
+    environment: Option<PathBuf>,
     threads: usize,
 ) -> PyResult<LoadJob> {
     let job = Job::start(threads, move || {
         let start = Instant::now();
-        let (desc, diagnostics) = sr_import::load(&path, &LoadOptions { defines, search_paths });
+        let (desc, diagnostics) = sr_import::load(&path, &LoadOptions { defines, search_paths, environment });
         Ok(compiled(desc, diagnostics, start))
     })?;
     Ok(LoadJob(job))
@@ -63,11 +65,16 @@ pub fn load_file(
 
 /// Starts to load a dictionary; files that it names are looked for in the current folder, then in `search_paths`.
 #[pyfunction]
-pub fn load_dict(dict: &Bound<'_, PyDict>, search_paths: Vec<PathBuf>, threads: usize) -> PyResult<LoadJob> {
+pub fn load_dict(
+    dict: &Bound<'_, PyDict>,
+    search_paths: Vec<PathBuf>,
+    environment: Option<PathBuf>,
+    threads: usize,
+) -> PyResult<LoadJob> {
     let start = Instant::now();
     let (node, mut diagnostics) = node::from_dict(dict)?;
     let directories = std::iter::once(PathBuf::new()).chain(search_paths).collect();
-    let origin = Origin { legacy: false, directories };
+    let origin = Origin { legacy: false, directories, environment };
     let job = Job::start(threads, move || {
         let desc = match diagnostics.has_errors() {
             true => None,

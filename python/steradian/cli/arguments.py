@@ -20,6 +20,7 @@ examples:
   steradian render scene.xml --strategy "0.5 cosine + 0.5 light"
   steradian render scene.xml --strategy "mis(bsdf, light, heuristic=balance)" --json
   steradian render scene.xml -D res=64 --search-path ../textures   what it names and lacks
+  steradian render model.glb --environment sky.hdr               lit by an image of the sky
   steradian info scene.xml
   steradian convert scene.xml scene.pbrt                         for another renderer
   steradian article --open                                       learn how it works
@@ -95,6 +96,7 @@ def _add_render(commands: argparse._SubParsersAction[_Parser]) -> None:
         allow_abbrev=False,
     )
     _add_scene(parser)
+    _add_environment(parser)
     add = parser.add_argument
     add(
         "-o",
@@ -147,6 +149,7 @@ def _add_info(commands: argparse._SubParsersAction[_Parser]) -> None:
         allow_abbrev=False,
     )
     _add_scene(parser)
+    _add_environment(parser)
     parser.add_argument("--json", action="store_true", help="print one JSON object on standard output")
 
 
@@ -254,7 +257,9 @@ def _probability(text: str) -> float:
 
 
 def _add_scene(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("scene", metavar="SCENE", help="a Mitsuba XML, a pbrt-v4 or a glTF 2.0 file")
+    parser.add_argument(
+        "scene", metavar="SCENE", help="a Mitsuba XML, pbrt-v4 or glTF 2.0 file, or an OBJ, PLY or STL mesh"
+    )
     parser.add_argument(
         "--define",
         "-D",
@@ -273,6 +278,14 @@ def _add_scene(parser: argparse.ArgumentParser) -> None:
         help="where to look for files that are neither beside the scene nor where it says; may be repeated",
     )
     parser.add_argument("--strict", action="store_true", help="fail on warnings about the scene, too")
+
+
+def _add_environment(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--environment",
+        metavar="FILE",
+        help="an image of latitude and longitude, .hdr or .exr, +Y up, to put around the scene",
+    )
 
 
 def _integer(low: int, high: int) -> Callable[[str], int]:

@@ -1,4 +1,4 @@
-//! The light of a scene that has none.
+//! The light of a scene that has none, and the environment that a user puts around any.
 
 use glam::{Mat3, Vec3};
 use std::sync::Arc;
@@ -6,6 +6,8 @@ use std::sync::Arc;
 use sr_scene::{Diagnostic, Image, LightDesc, Pixels, ShapeDesc, Span, SphereMapping};
 
 use super::Assembly;
+use super::images::ImageSlot;
+use crate::images::Decode;
 
 const WIDTH: u32 = 128;
 const HEIGHT: u32 = 64;
@@ -28,7 +30,8 @@ impl Assembly<'_> {
     /// Adds a soft sky if there is no light, and says so. +Y is up. `emitters`: are the shapes that shine meant as lights?
     pub fn light_if_dark(&mut self, emitters: bool, span: &Span) {
         let shines = |shape: &ShapeDesc| shape.emission.is_some();
-        if !self.lights.is_empty() || emitters && self.shapes.iter().any(shines) {
+        if self.environment.is_some() || !self.lights.is_empty() || emitters && self.shapes.iter().any(shines)
+        {
             return;
         }
         self.d.push(
@@ -49,6 +52,34 @@ impl Assembly<'_> {
         let image = self.image_in_memory(&Arc::new(Image { name, width: WIDTH, height: HEIGHT, pixels }));
         self.lights.push(LightDesc::Environment {
             image,
+            mapping: SphereMapping::LatLong,
+            scale: 1.0,
+            world_from_light: Mat3::IDENTITY,
+            mis_compensation: false,
+            portals: Vec::new(),
+            span: span.clone(),
+        });
+    }
+
+    /// Adds the environment that was asked for beside the file.
+    pub(super) fn surround(&mut self, span: &Span) {
+        let Some(path) = self.environment.take() else { return };
+        let surrounds = |light: &LightDesc| {
+            matches!(
+                light,
+                LightDesc::Constant { .. } | LightDesc::Environment { .. } | LightDesc::Sky { .. }
+            )
+        };
+        if self.lights.iter().any(surrounds) {
+            let message = format!("the scene has an environment of its own beside {}", path.display());
+            self.d.push(
+                Diagnostic::warning("scene::two-environments", span, message)
+                    .consequence("it is lit by both, added"),
+            );
+        }
+        self.images.push(ImageSlot::File { path, decode: Decode::Linear, span: span.clone() });
+        self.lights.push(LightDesc::Environment {
+            image: self.images.len() as u32 - 1,
             mapping: SphereMapping::LatLong,
             scale: 1.0,
             world_from_light: Mat3::IDENTITY,

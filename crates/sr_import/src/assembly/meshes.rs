@@ -219,7 +219,7 @@ fn place_all(pending: &mut [PendingMesh], files: HashMap<FileKey, Result<RawMesh
 }
 
 /// Faces of all subdivided meshes together.
-const MAX_SUBDIVIDED: u64 = 1 << 21;
+const MAX_SUBDIVIDED: u64 = 1 << 20;
 
 /// What was read for a mesh; of what lay in memory, the name is left.
 fn taken(

@@ -48,6 +48,8 @@ pub struct Assembly<'d> {
     pub instances: Vec<InstanceDesc>,
     /// Lights that are not shapes.
     pub lights: Vec<LightDesc>,
+    /// An image of latitude and longitude, +Y up, that the scene does not name and is lit by.
+    pub environment: Option<PathBuf>,
     images: Vec<ImageSlot>,
     image_files: HashMap<(PathBuf, Decode), u32>,
     textures: Vec<TextureDesc>,
@@ -69,6 +71,7 @@ impl<'d> Assembly<'d> {
             groups: Vec::new(),
             instances: Vec::new(),
             lights: Vec::new(),
+            environment: None,
             images: Vec::new(),
             image_files: HashMap::new(),
             textures: Vec::new(),
@@ -152,6 +155,7 @@ impl<'d> Assembly<'d> {
     /// Reads what is still to be read, and validates. `span` is the scene's own.
     pub fn finish(mut self, span: &Span) -> Option<SceneDesc> {
         self.load_meshes(span);
+        self.surround(span);
         let images = self.load_images();
         let camera = match self.camera.take() {
             Some(camera) => camera,

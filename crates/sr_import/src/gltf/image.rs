@@ -10,7 +10,7 @@ use sr_scene::{Image, Pixels};
 use super::container;
 use super::document::Document;
 use super::json::Value;
-use crate::images::{Decode, decode_bytes};
+use crate::images::{self, Decode, decode_bytes};
 use crate::values::srgb_to_linear;
 
 /// What is read out of an image.
@@ -20,19 +20,29 @@ pub enum Part {
     Color,
     /// One channel.
     Channel(usize),
-    /// One less one channel.
-    Inverse(usize),
+    /// One less alpha times a factor, by its bits.
+    Inverse(u32),
     /// Is alpha times a factor at least a cutoff? Both by their bits.
     AtLeast { cutoff: u32, factor: u32 },
     /// A normal whose first two coordinates are scaled, by the bits of the factor.
     Normal(u32),
 }
 
+/// More texels than this are not decoded, or made of what was, in all: a file may show one image in many ways.
+const MAX_TEXELS: u64 = 1 << 29;
+
 /// The images of a file by their index.
-#[derive(Default)]
 pub struct Images {
     decoded: HashMap<usize, Arc<Image>>,
     parts: HashMap<(usize, Part), u32>,
+    /// How many texels may still be decoded or made.
+    left: u64,
+}
+
+impl Default for Images {
+    fn default() -> Self {
+        Self { decoded: HashMap::new(), parts: HashMap::new(), left: MAX_TEXELS }
+    }
 }
 
 impl Document<'_, '_> {
@@ -64,6 +74,17 @@ impl Document<'_, '_> {
                 Err(reason) => self.bad_image(image, &name, &reason),
             }
         }
+        encoded.retain(|(_, name, bytes, image)| {
+            let fits = self.images.take(images::texels(Path::new(name), bytes));
+            if !fits {
+                self.bad_image(
+                    image,
+                    name,
+                    &format!("with it the file's images have more than {MAX_TEXELS} pixels"),
+                );
+            }
+            fits
+        });
         let decoded: Vec<Result<Image, String>> = encoded
             .par_iter()
             .map(|(_, name, bytes, _)| decode_bytes(Path::new(name), bytes, Decode::Raw))
@@ -93,11 +114,21 @@ impl Document<'_, '_> {
         if let Some(&known) = self.images.parts.get(&(index, part)) {
             return Some(known);
         }
-        let image = self.images.decoded.get(&index)?;
-        let made = match part {
-            Part::Color if matches!(image.pixels, Pixels::U8 { .. }) => image.clone(),
-            Part::Normal(bits) if f32::from_bits(bits) == 1.0 => image.clone(),
-            _ => Arc::new(make(image, part)),
+        let image = self.images.decoded.get(&index)?.clone();
+        let is_whole = match part {
+            Part::Color => matches!(image.pixels, Pixels::U8 { .. }),
+            Part::Normal(bits) => f32::from_bits(bits) == 1.0,
+            _ => false,
+        };
+        let made = if is_whole {
+            image
+        } else if self.images.take(u64::from(image.width) * u64::from(image.height)) {
+            Arc::new(make(&image, part))
+        } else {
+            let span = self.root.get("images").map(|images| images.span.clone()).unwrap_or_default();
+            let message = format!("what is made of the file's images has more than {MAX_TEXELS} pixels");
+            self.error("file::bad-image", &span, message);
+            return None;
         };
         let slot = self.out.image_in_memory(&made);
         self.images.parts.insert((index, part), slot);
@@ -143,7 +174,7 @@ fn make(image: &Image, part: Part) -> Image {
             Pixels::F32 { channels: 3, data }
         }
         Part::Channel(c) => one(&|t| channel(t, c)),
-        Part::Inverse(c) => one(&|t| 1.0 - channel(t, c)),
+        Part::Inverse(factor) => one(&|t| (1.0 - f32::from_bits(factor) * channel(t, 3)).clamp(0.0, 1.0)),
         Part::AtLeast { cutoff, factor } => {
             let (cutoff, factor) = (f32::from_bits(cutoff), f32::from_bits(factor));
             one(&|t| f32::from(channel(t, 3) * factor >= cutoff))
@@ -162,6 +193,13 @@ fn make(image: &Image, part: Part) -> Image {
 }
 
 impl Images {
+    /// Are so many texels allowed?
+    fn take(&mut self, texels: u64) -> bool {
+        let left = self.left.checked_sub(texels);
+        self.left = left.unwrap_or(self.left);
+        left.is_some()
+    }
+
     /// The mean of the direction and the strength that an image of anisotropy holds, and whether one direction is all.
     pub fn mean_direction(&self, index: usize) -> Option<(f32, bool)> {
         let image = self.decoded.get(&index)?;

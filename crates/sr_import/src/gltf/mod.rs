@@ -4,7 +4,7 @@
 //! - `document`: indices followed, values of the wrong kind said, buffers read once.
 //! - `accessor`: numbers out of buffers. `geometry`: a primitive's triangles; `morph`, `skin`: as they stand at time 0.
 //! - `image`, `texture`, `material`: what surfaces look like. `camera`, `light`, `node`: where everything stands.
-//! - `extensions`: which of them are done, and what is said about the others.
+//! - `extensions`: which of them are done, and what is said about the others. `properties`: those that glTF does not know.
 
 mod accessor;
 mod camera;
@@ -18,6 +18,7 @@ mod light;
 mod material;
 mod morph;
 mod node;
+mod properties;
 mod skin;
 mod specular_glossiness;
 mod texture;
@@ -30,7 +31,13 @@ use crate::assembly::Assembly;
 use document::Document;
 
 /// Loads a scene from the bytes of a file. `name` is what messages call it.
-pub fn load(name: &str, bytes: Vec<u8>, directories: Vec<PathBuf>, d: &mut Diagnostics) -> Option<SceneDesc> {
+pub fn load(
+    name: &str,
+    bytes: Vec<u8>,
+    directories: Vec<PathBuf>,
+    environment: Option<PathBuf>,
+    d: &mut Diagnostics,
+) -> Option<SceneDesc> {
     let container = match container::read(bytes) {
         Ok(container) => container,
         Err(reason) => {
@@ -52,7 +59,9 @@ pub fn load(name: &str, bytes: Vec<u8>, directories: Vec<PathBuf>, d: &mut Diagn
     drop(container.json);
     let span = Span { source, bytes: 0..0 };
     let mut document = Document::new(&root, container.binary, Assembly::new(directories, d));
+    document.out.environment = environment;
     extensions::report(&root, document.out.d);
+    properties::report(&root, document.out.d);
     document.scene();
     if let (0, Some(packed)) = (document.shapes, document.packed.clone()) {
         let message = "all meshes are packed by KHR_draco_mesh_compression; save the file without it \

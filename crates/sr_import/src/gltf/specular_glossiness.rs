@@ -28,9 +28,8 @@ impl Document<'_, '_> {
         let specular_color = self.product(color, specular, &object.span);
         let glossiness = self.number(object, "glossinessFactor", 1.0) as f32;
         let roughness = match texture {
-            // A factor cannot be put into 1 - factor · texture after the fact; files have it at 1.
             Some(info) => {
-                let inverse = self.texture(info, Part::Inverse(3), sets);
+                let inverse = self.texture(info, Part::Inverse(glossiness.to_bits()), sets);
                 self.scalar_product(inverse, 1.0, &object.span)
             }
             None => ScalarInput::Constant((1.0 - glossiness).clamp(0.0, 1.0)),

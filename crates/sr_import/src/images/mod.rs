@@ -60,6 +60,27 @@ pub fn decode_bytes(path: &Path, bytes: &[u8], decode: Decode) -> Result<Image, 
     Ok(Image { name: path.display().to_string(), width, height, pixels })
 }
 
+/// How many texels an image has by its header; 0 if that cannot be read, as the image cannot then.
+pub fn texels(path: &Path, bytes: &[u8]) -> u64 {
+    let size = if pfm::is_pfm(bytes) {
+        // Floats of at least one channel.
+        return bytes.len() as u64 / 4;
+    } else if bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
+        let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(bytes), false).ok();
+        meta.and_then(|meta| meta.headers.first().map(|h| (h.layer_size.x() as u64, h.layer_size.y() as u64)))
+    } else {
+        let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().ok();
+        let size = reader.and_then(|mut reader| {
+            if reader.format().is_none() {
+                reader.set_format(ImageFormat::from_path(path).ok()?);
+            }
+            reader.into_dimensions().ok()
+        });
+        size.map(|(width, height)| (width.into(), height.into()))
+    };
+    size.map_or(0, |(width, height): (u64, u64)| width.saturating_mul(height))
+}
+
 fn open_other(path: &Path, bytes: &[u8]) -> Result<DynamicImage, String> {
     let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
     if reader.format().is_none() {

@@ -1,11 +1,12 @@
 //! Meshes: files and built-in shapes to [`MeshDesc`] in world space.
 
-mod normals;
-mod obj;
+pub mod normals;
+pub mod obj;
 mod place;
 mod ply;
 pub mod primitives;
 mod serialized;
+pub mod stl;
 mod subdivide;
 
 pub use place::{Convention, Placement, Report, place};

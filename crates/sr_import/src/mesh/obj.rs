@@ -1,4 +1,5 @@
-//! Wavefront OBJ: polygons of positions, texture coordinates and normals. Materials and groups are not read.
+//! Wavefront OBJ: polygons of positions, texture coordinates and normals, and the names of their materials.
+//! Groups are not read.
 
 use std::collections::HashMap;
 
@@ -12,15 +13,62 @@ use crate::values::shown;
 type Corner = (u32, Option<u32>, Option<u32>);
 
 /// Parses a file. Corners that share all indices share a vertex, as in Mitsuba.
-pub fn parse(bytes: &[u8], fans: &mut Fans) -> Result<MeshDesc, String> {
+pub(super) fn parse(bytes: &[u8], fans: &mut Fans) -> Result<MeshDesc, String> {
+    Ok(read(bytes, fans)?.finish())
+}
+
+/// A mesh, and what it says about its materials.
+#[derive(Debug)]
+pub struct Covered {
+    /// All of the file.
+    pub mesh: MeshDesc,
+    /// The files that describe materials.
+    pub libraries: Vec<String>,
+    /// The names of materials, each once.
+    pub materials: Vec<String>,
+    /// From which triangle on which of the materials is used, in order.
+    pub uses: Vec<(usize, usize)>,
+    /// The colors of the vertices were left out, as not all of them have one.
+    pub some_colors: bool,
+    /// The first statement that is no mesh's, and its line: lines, points, curves, free-form surfaces.
+    pub left_out: Option<(String, usize)>,
+    /// Is it flat somewhere by its smoothing groups?
+    pub has_flat: bool,
+}
+
+/// Parses a file with its materials' names and its vertices' colors.
+pub fn parse_covered(bytes: &[u8]) -> Result<Covered, String> {
+    let mut reader = read(bytes, &mut Fans::default())?;
+    let has_colors = reader.colors.len() == reader.positions.len();
+    let some_colors = !has_colors && !reader.colors.is_empty();
+    let colors = if has_colors { std::mem::take(&mut reader.colors) } else { Vec::new() };
+    let vertex_colors = match colors[..] {
+        [] => Vec::new(),
+        _ => reader.corners.iter().map(|c| colors[c.0 as usize]).collect(),
+    };
+    let (left_out, has_flat) = (reader.left_out.take(), reader.has_flat);
+    let libraries = std::mem::take(&mut reader.libraries);
+    let uses = std::mem::take(&mut reader.uses);
+    let mut materials = vec![String::new(); reader.materials.len()];
+    for (name, index) in reader.materials.drain() {
+        materials[index] = name;
+    }
+    let mesh = MeshDesc { vertex_colors, ..reader.finish() };
+    Ok(Covered { mesh, libraries, materials, uses, some_colors, left_out, has_flat })
+}
+
+fn read(bytes: &[u8], fans: &mut Fans) -> Result<Reader, String> {
     let mut reader = Reader::default();
     for (number, line) in bytes.split(|&b| b == b'\n').enumerate() {
         // Comments and names may be in any encoding; what is read is ASCII.
         let line = String::from_utf8_lossy(line);
-        let line = line.split('#').next().unwrap_or("");
-        reader.line(line, fans).map_err(|reason| format!("line {}: {reason}", number + 1))?;
+        let is_known = reader.line(&line, fans).map_err(|reason| format!("line {}: {reason}", number + 1))?;
+        if !is_known && reader.left_out.is_none() {
+            let word = line.split_ascii_whitespace().next().unwrap_or("");
+            reader.left_out = Some((word.to_owned(), number + 1));
+        }
     }
-    Ok(reader.finish())
+    Ok(reader)
 }
 
 #[derive(Default)]
@@ -32,13 +80,29 @@ struct Reader {
     corners: Vec<Corner>,
     triangles: Vec<[u32; 3]>,
     polygon: Vec<u32>,
+    colors: Vec<Vec3>,
+    libraries: Vec<String>,
+    materials: HashMap<String, usize>,
+    uses: Vec<(usize, usize)>,
+    left_out: Option<(String, usize)>,
+    has_flat: bool,
 }
 
 impl Reader {
-    fn line(&mut self, line: &str, fans: &mut Fans) -> Result<(), String> {
-        let mut words = line.split_ascii_whitespace();
+    /// Reads a statement; is it one that is known?
+    fn line(&mut self, line: &str, fans: &mut Fans) -> Result<bool, String> {
+        let mut is_known = true;
+        let mut words = line.split('#').next().unwrap_or("").split_ascii_whitespace();
         match words.next() {
-            Some("v") => self.positions.push(Vec3::from(floats(&mut words)?)),
+            Some("v") => {
+                self.positions.push(Vec3::from(floats(&mut words)?));
+                // Some programs write a color after the position.
+                if let [Some(Ok(r)), Some(Ok(g)), Some(Ok(b))] =
+                    std::array::from_fn(|_| words.next().map(str::parse))
+                {
+                    self.colors.push(Vec3::new(r, g, b));
+                }
+            }
             Some("vn") => self.normals.push(Vec3::from(floats(&mut words)?)),
             Some("vt") => {
                 let u = words.next().ok_or("too few numbers")?;
@@ -46,14 +110,28 @@ impl Reader {
                 self.uvs.push(Vec2::new(float(u)?, words.next().map_or(Ok(0.0), float)?));
             }
             Some("f") => self.face(words, fans)?,
-            _ => {}
+            // A name may have spaces, and a "#" of its own.
+            Some(word @ ("usemtl" | "mtllib")) => {
+                let name = line.trim_ascii_start().get(word.len()..).unwrap_or("").trim().to_owned();
+                if word == "mtllib" {
+                    self.libraries.push(name);
+                } else {
+                    let next = self.materials.len();
+                    let material = *self.materials.entry(name).or_insert(next);
+                    self.uses.push((self.triangles.len(), material));
+                }
+            }
+            Some("s") => self.has_flat |= matches!(words.next(), Some("off" | "0")),
+            // Groups and objects are names.
+            Some("g" | "o") | None => {}
+            Some(_) => is_known = false,
         }
         if self.positions.len().max(self.normals.len()).max(self.uvs.len()).max(self.triangles.len())
             > MAX_ELEMENTS
         {
             return Err(format!("more than {MAX_ELEMENTS} elements"));
         }
-        Ok(())
+        Ok(is_known)
     }
 
     fn face<'a>(&mut self, words: impl Iterator<Item = &'a str>, fans: &mut Fans) -> Result<(), String> {
@@ -142,6 +220,21 @@ mod tests {
             parse(b"v 0 0 0\nv 1 0 0\nv 1 1 0\nvn 0 0 1\nf 1//1 2//1 3//1", &mut Fans::default()).unwrap();
         assert_eq!(mesh.normals, [Vec3::Z; 3]);
         assert!(mesh.uvs.is_empty());
+    }
+
+    #[test]
+    fn materials_and_colors() {
+        let text = "mtllib a b.mtl\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0 0 0 1\nusemtl red #2\nf 1 2 3\nusemtl x\n\
+            f 1 2 3\nusemtl red #2\nf 1 2 3 # usemtl x\n";
+        let file = parse_covered(text.as_bytes()).unwrap();
+        assert_eq!(
+            (file.libraries, file.materials),
+            (vec!["a b.mtl".to_owned()], vec!["red #2".into(), "x".into()])
+        );
+        assert_eq!(file.uses, [(0, 0), (1, 1), (2, 0)]);
+        assert_eq!(file.mesh.vertex_colors, Vec3::AXES);
+        let some = parse_covered(b"v 0 0 0\nv 1 0 0 1 1 1\n").unwrap();
+        assert!(some.some_colors && some.mesh.vertex_colors.is_empty());
     }
 
     #[test]

@@ -14,18 +14,21 @@ mod xml;
 
 use sr_scene::{Diagnostics, SceneDesc};
 
+use crate::LoadOptions;
 use crate::files::Directories;
 pub use lower::{Origin, lower};
 
-/// Loads a scene from text. Files are looked for in `directories`; `defines` override the text's `<default>`s.
+/// Loads a scene from text. Files are looked for in `directories`; the options' `defines` override the text's
+/// `<default>`s.
 pub fn load(
     name: &str,
     text: &str,
     directories: Directories,
-    defines: &[(String, String)],
+    options: &LoadOptions,
     diagnostics: &mut Diagnostics,
 ) -> Option<SceneDesc> {
-    let scene = xml::read(name, text, directories, defines, diagnostics)?;
-    let origin = Origin { legacy: scene.legacy, directories: scene.directories.into_list() };
+    let scene = xml::read(name, text, directories, &options.defines, diagnostics)?;
+    let environment = options.environment.clone();
+    let origin = Origin { legacy: scene.legacy, directories: scene.directories.into_list(), environment };
     lower(&scene.root, &origin, diagnostics)
 }

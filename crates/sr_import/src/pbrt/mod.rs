@@ -47,11 +47,13 @@ pub fn load(
     name: &str,
     mut text: Text,
     directories: Vec<PathBuf>,
+    environment: Option<PathBuf>,
     diagnostics: &mut Diagnostics,
 ) -> Option<SceneDesc> {
     let source = diagnostics.sources.add(name, "");
     let span = Span { source, bytes: 0..text.text.len().min(1) };
     let mut reader = Reader::new(directories, diagnostics);
+    reader.out.environment = environment;
     reader.open_files.push(PathBuf::from(name));
     reader.run(&mut text, source);
     reader.out.d.sources.set_text(source, text.text);

@@ -19,7 +19,7 @@ use super::normals;
 use topology::{Edges, Surface};
 
 /// Faces that are made at most.
-const MAX_FACES: u64 = 1 << 21;
+const MAX_FACES: u64 = 1 << 20;
 
 /// How to refine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -36,6 +36,8 @@ pub struct Origin {
     pub legacy: bool,
     /// Where files are looked for, in this order.
     pub directories: Vec<PathBuf>,
+    /// An image of latitude and longitude, +Y up, that is put around the scene.
+    pub environment: Option<PathBuf>,
 }
 
 /// Lowers a `<scene>` and validates it.
@@ -44,6 +46,7 @@ pub fn lower(root: &Node, origin: &Origin, d: &mut Diagnostics) -> Option<SceneD
     lowering.collect_ids(root);
     lowering.collect_other_names(root);
     lowering.scene(root);
+    lowering.out.environment.clone_from(&origin.environment);
     lowering.out.finish(&root.span)
 }
 

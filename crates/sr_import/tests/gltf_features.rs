@@ -1,0 +1,222 @@
+//! glTF: what bends, repeats and replaces meshes, and what extensions make of materials; small files of our own.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use glam::Vec3;
+use sr_import::{LoadOptions, load_str};
+use sr_scene::{
+    ColorInput, Diagnostics, Geometry, MaterialDesc, MeshDesc, MetallicRoughnessDesc, Pixels, Rgb,
+    ScalarInput, SceneDesc,
+};
+
+fn read(json: &str) -> (Option<SceneDesc>, Diagnostics) {
+    load_str("test.gltf", json, Path::new(""), &LoadOptions::default())
+}
+
+fn codes(diagnostics: &Diagnostics) -> Vec<&'static str> {
+    diagnostics.list.iter().map(|d| d.code).collect()
+}
+
+/// A data URI of bytes.
+fn uri(bytes: &[u8]) -> String {
+    let mut out = String::from("data:application/octet-stream,");
+    bytes.iter().for_each(|b| write!(out, "%{b:02x}").unwrap());
+    out
+}
+
+fn floats(values: &[f32]) -> Vec<u8> {
+    values.iter().flat_map(|v| v.to_le_bytes()).collect()
+}
+
+/// A triangle at (0, 0, 0), (1, 0, 0), (0, 1, 0) as accessor 0; `arrays` are the views from 1 on.
+fn file(arrays: &[Vec<u8>], accessors: &str, rest: &str) -> String {
+    let mut bytes = floats(&[0., 0., 0., 1., 0., 0., 0., 1., 0.]);
+    let mut views = String::from(r#"{"buffer": 0, "byteLength": 36}"#);
+    for array in arrays {
+        let (start, length) = (bytes.len(), array.len());
+        write!(views, r#", {{"buffer": 0, "byteOffset": {start}, "byteLength": {length}}}"#).unwrap();
+        bytes.extend(array);
+        bytes.resize(bytes.len().next_multiple_of(4), 0);
+    }
+    format!(
+        r#"{{"asset": {{"version": "2.0"}}, "buffers": [{{"byteLength": {}, "uri": "{}"}}], "bufferViews": [{views}],
+        "accessors": [{{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}}{accessors}], {rest}}}"#,
+        bytes.len(),
+        uri(&bytes)
+    )
+}
+
+fn mesh(scene: &SceneDesc) -> &MeshDesc {
+    let Geometry::Mesh(mesh) = &scene.shapes[0].geometry else { panic!() };
+    mesh
+}
+
+const USUAL: [&str; 2] = ["scene::no-light", "scene::no-camera"];
+
+#[test]
+fn morph_targets_stand_as_their_weights_say() {
+    let up = floats(&[0., 0., 2., 0., 0., 0., 0., 0., 0.]);
+    let right = floats(&[0., 0., 0., 4., 0., 0., 0., 0., 0.]);
+    let accessors = r#", {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC3"},
+        {"bufferView": 2, "componentType": 5126, "count": 3, "type": "VEC3"}"#;
+    let json = |node: &str| {
+        let rest = format!(
+            r#""meshes": [{{"weights": [0.5, 0.25], "primitives": [{{"attributes": {{"POSITION": 0}},
+            "targets": [{{"POSITION": 1}}, {{"POSITION": 2}}]}}]}}], "nodes": [{{"mesh": 0{node}}}]"#
+        );
+        file(&[up.clone(), right.clone()], accessors, &rest)
+    };
+    let (scene, diagnostics) = read(&json(""));
+    assert_eq!(codes(&diagnostics), USUAL, "{}", diagnostics.render(false));
+    let positions = [Vec3::Z, Vec3::new(2.0, 0.0, 0.0), Vec3::Y];
+    assert_eq!(mesh(&scene.unwrap()).positions, positions);
+    // A node's own weights go before the mesh's.
+    let (scene, _) = read(&json(r#", "weights": [1, 0]"#));
+    assert_eq!(mesh(&scene.unwrap()).positions, [2.0 * Vec3::Z, Vec3::X, Vec3::Y]);
+}
+
+#[test]
+fn skins_move_vertices_with_their_joints() {
+    let joints = vec![0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0];
+    let weights = floats(&[0.5, 0.5, 0., 0., 1., 0., 0., 0., 1., 0., 0., 0.]);
+    // The second joint was bound at x = 1.
+    let mut bind = glam::Mat4::IDENTITY.to_cols_array().to_vec();
+    bind.extend(glam::Mat4::from_translation(Vec3::NEG_X).to_cols_array());
+    let accessors = r#", {"bufferView": 1, "componentType": 5121, "count": 3, "type": "VEC4"},
+        {"bufferView": 2, "componentType": 5126, "count": 3, "type": "VEC4"},
+        {"bufferView": 3, "componentType": 5126, "count": 2, "type": "MAT4"}"#;
+    let rest = r#""meshes": [{"primitives": [{"attributes": {"POSITION": 0, "JOINTS_0": 1, "WEIGHTS_0": 2}}]}],
+        "skins": [{"joints": [1, 2], "inverseBindMatrices": 3}],
+        "nodes": [{"mesh": 0, "skin": 0, "translation": [9, 9, 9]}, {"children": [2]}, {"translation": [1, 0, 2]}]"#;
+    let (scene, diagnostics) = read(&file(&[joints, weights, floats(&bind)], accessors, rest));
+    assert_eq!(codes(&diagnostics), USUAL, "{}", diagnostics.render(false));
+    // The node's own place does not count. The second joint has moved up by 2 since.
+    let positions = [Vec3::Z, Vec3::new(1.0, 0.0, 2.0), Vec3::Y];
+    assert_eq!(mesh(&scene.unwrap()).positions, positions);
+}
+
+#[test]
+fn sparse_accessors_replace_rows() {
+    let arrays = [vec![2u8, 0], floats(&[0., 3., 0.])];
+    let accessors = r#", {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "sparse": {"count": 1,
+        "indices": {"bufferView": 1, "componentType": 5123}, "values": {"bufferView": 2}}}"#;
+    let rest = r#""meshes": [{"primitives": [{"attributes": {"POSITION": 1}}]}], "nodes": [{"mesh": 0}]"#;
+    let json = file(&arrays, accessors, rest);
+    let (scene, diagnostics) = read(&json);
+    assert_eq!(codes(&diagnostics), USUAL, "{}", diagnostics.render(false));
+    assert_eq!(mesh(&scene.unwrap()).positions, [Vec3::ZERO, Vec3::X, 3.0 * Vec3::Y]);
+    let arrays = [vec![3u8, 0], floats(&[0., 3., 0.])];
+    let (_, diagnostics) = read(&file(&arrays, accessors, rest));
+    assert!(codes(&diagnostics).contains(&"gltf::bad-accessor"));
+}
+
+#[test]
+fn instances_of_a_mesh() {
+    let moved = floats(&[1., 0., 0., 0., 2., 0.]);
+    let scaled = floats(&[1., 1., 1., 3., 3., 3.]);
+    let accessors = r#", {"bufferView": 1, "componentType": 5126, "count": 2, "type": "VEC3"},
+        {"bufferView": 2, "componentType": 5126, "count": 2, "type": "VEC3"}"#;
+    let rest = r#""meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "nodes": [{"mesh": 0,
+        "translation": [0, 0, 1], "extensions": {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 1,
+        "SCALE": 2}}}}]"#;
+    let (scene, diagnostics) = read(&file(&[moved, scaled], accessors, rest));
+    assert_eq!(codes(&diagnostics), USUAL, "{}", diagnostics.render(false));
+    let scene = scene.unwrap();
+    assert_eq!(scene.instances.len(), 2);
+    let placed = |at: usize| scene.instances[at].world_from_group.transform_point3(Vec3::X);
+    assert_eq!((placed(0), placed(1)), (Vec3::new(2.0, 0.0, 1.0), Vec3::new(3.0, 2.0, 1.0)));
+}
+
+/// The scene of a triangle of a material, with images of one texel: the first is red 51, green 102, blue 255, alpha 128.
+fn covered(material: &str) -> (SceneDesc, Diagnostics) {
+    let image =
+        uri(b"P7\nWIDTH 1\nHEIGHT 1\nDEPTH 4\nMAXVAL 255\nTUPLTYPE RGB_ALPHA\nENDHDR\n\x33\x66\xff\x80");
+    let rest = format!(
+        r#""meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}, "material": 0}}]}}], "nodes": [{{"mesh": 0}}],
+        "images": [{{"uri": "{image}"}}], "textures": [{{"source": 0}}], "materials": [{material}]"#
+    );
+    let (scene, diagnostics) = read(&file(&[], "", &rest));
+    let scene = scene.unwrap_or_else(|| panic!("{}", diagnostics.render(false)));
+    (scene, diagnostics)
+}
+
+fn metallic_roughness(scene: &SceneDesc) -> MetallicRoughnessDesc {
+    let found = scene.materials.iter().find_map(|material| match material {
+        MaterialDesc::MetallicRoughness(m) => Some(*m),
+        _ => None,
+    });
+    found.expect("a metallic-roughness material")
+}
+
+#[test]
+fn specular_glossiness_with_a_factor_and_a_texture() {
+    let (scene, diagnostics) = covered(
+        r#"{"extensions": {"KHR_materials_pbrSpecularGlossiness": {"diffuseFactor": [0.5, 0.25, 1, 1],
+        "specularFactor": [0.04, 0.08, 0.02], "glossinessFactor": 0.5, "specularGlossinessTexture": {"index": 0}}}}"#,
+    );
+    assert_eq!(codes(&diagnostics), ["gltf::specular-glossiness", "scene::no-light", "scene::no-camera"]);
+    let m = metallic_roughness(&scene);
+    assert_eq!(m.base_color, ColorInput::Constant(Rgb::new(0.5, 0.25, 1.0)));
+    assert_eq!(m.metallic, ScalarInput::Constant(0.0));
+    // 1 - 0.5 · 128/255, of alpha.
+    let bytes = scene.images.iter().find_map(|image| match &image.pixels {
+        Pixels::U8 { channels: 1, data } => Some(data.clone()),
+        _ => None,
+    });
+    assert_eq!(bytes, Some(vec![191]));
+}
+
+#[test]
+fn extensions_of_materials() {
+    let with = |extension: &str| {
+        let (scene, diagnostics) = covered(&format!(r#"{{"extensions": {{{extension}}}}}"#));
+        assert_eq!(codes(&diagnostics), USUAL, "{extension}: {}", diagnostics.render(false));
+        metallic_roughness(&scene)
+    };
+    let number = ScalarInput::Constant;
+    let color = |r, g, b| ColorInput::Constant(Rgb::new(r, g, b));
+    let m = with(r#""KHR_materials_clearcoat": {"clearcoatFactor": 0.5, "clearcoatRoughnessFactor": 0.25}"#);
+    assert_eq!((m.clearcoat, m.clearcoat_roughness), (number(0.5), number(0.25)));
+    let m = with(r#""KHR_materials_sheen": {"sheenColorFactor": [1, 0.5, 0], "sheenRoughnessFactor": 0.75}"#);
+    assert_eq!((m.sheen_color, m.sheen_roughness), (color(1.0, 0.5, 0.0), number(0.75)));
+    let m = with(r#""KHR_materials_specular": {"specularFactor": 0.5, "specularColorFactor": [2, 1, 0]}"#);
+    assert_eq!((m.specular, m.specular_color), (number(0.5), color(2.0, 1.0, 0.0)));
+    assert_eq!(with(r#""KHR_materials_ior": {"ior": 1.75}"#).ior, 1.75);
+    let m = with(r#""KHR_materials_transmission": {"transmissionFactor": 0.5}"#);
+    assert_eq!((m.transmission, m.thin), (number(0.5), true));
+    let m = with(r#""KHR_materials_volume": {"thicknessFactor": 1}"#);
+    assert!(!m.thin);
+    let m = with(r#""KHR_materials_anisotropy": {"anisotropyStrength": 0.5, "anisotropyRotation": 1.25}"#);
+    assert_eq!((m.anisotropy, m.anisotropy_rotation), (number(0.5), 1.25));
+    let (_, diagnostics) = covered(
+        r#"{"extensions": {"KHR_materials_volume": {"thicknessFactor": 1, "attenuationDistance": 1,
+        "attenuationColor": [0.25, 1, 1]}}}"#,
+    );
+    assert!(codes(&diagnostics).contains(&"gltf::attenuation"));
+    let (scene, diagnostics) = covered(
+        r#"{"pbrMetallicRoughness": {"baseColorFactor": [1, 0.5, 0, 1]}, "extensions": {"KHR_materials_unlit": {}}}"#,
+    );
+    assert!(codes(&diagnostics).contains(&"gltf::unlit"));
+    assert_eq!(scene.shapes[0].emission.unwrap().radiance, color(1.0, 0.5, 0.0));
+    for (name, code) in [
+        ("KHR_materials_iridescence", "gltf::extension"),
+        ("KHR_materials_dispersion", "gltf::extension"),
+        ("KHR_materials_diffuse_transmission", "gltf::extension"),
+        ("KHR_materials_shine", "gltf::unknown-extension"),
+    ] {
+        let (_, diagnostics) = covered(&format!(r#"{{"extensions": {{"{name}": {{}}}}}}"#));
+        assert!(codes(&diagnostics).contains(&code), "{name}");
+    }
+}
+
+#[test]
+fn properties_that_gltf_does_not_know_are_said_once() {
+    let (_, diagnostics) = covered(
+        r#"{"alphamode": "MASK", "extras": {"anything": 1}, "pbrMetallicRoughness": {"roughness": 0.5}},
+        {"alphamode": "MASK"}"#,
+    );
+    let found: Vec<_> = diagnostics.list.iter().filter(|d| d.code == "gltf::unknown-property").collect();
+    assert_eq!(found.len(), 2, "{}", diagnostics.render(false));
+    assert_eq!(found[0].hint.as_deref(), Some("did you mean \"alphaMode\"?"));
+}
