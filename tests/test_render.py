@@ -20,6 +20,44 @@ def same_bits(a, b):
     )
 
 
+@pytest.mark.parametrize("behind", [False, True])
+def test_bitangents_follow_mirrored_texture_coordinates(behind):
+    """A bump that is mirrored twice, by v and in its texture, is the same bump; by v alone it is not."""
+
+    def image(mirrored, tilt, follows):
+        corners = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], np.float32)
+        uvs = (corners[:, :2] + 1) / 2 * [1, -1 if mirrored else 1]
+        normal = np.full((2, 2, 3), [0.5, 0.5 + tilt, 0.9], np.float32)
+        texture = {"type": "bitmap", "data": normal, "raw": True}
+        bumpy = {
+            "type": "normalmap",
+            "normalmap": texture,
+            "along_v": follows,
+            "inner": {"type": "diffuse"},
+        }
+        camera = sr.Transform.look_at((0, 0, -5 if behind else 5), (0, 0, 0), (0, 1, 0))
+        scene = sr.load(
+            {
+                "type": "scene",
+                "camera": {"type": "perspective", "fov": 10, "to_world": camera},
+                "sun": {"type": "directional", "direction": [0, -1, 1 if behind else -1]},
+                "quad": {
+                    "type": "mesh",
+                    "vertices": corners,
+                    "faces": [[0, 1, 2], [0, 2, 3]],
+                    "uvs": uvs.astype(np.float32),
+                    "bsdf": {"type": "twosided", "inner": bumpy},
+                },
+            }
+        )
+        return sr.render(scene, spp=4, size=(4, 4)).image.mean()
+
+    upright = image(mirrored=False, tilt=0.3, follows=True)
+    assert upright == pytest.approx(image(mirrored=False, tilt=0.3, follows=False), rel=1e-5)
+    assert upright == pytest.approx(image(mirrored=True, tilt=-0.3, follows=True), rel=1e-5)
+    assert upright != pytest.approx(image(mirrored=True, tilt=-0.3, follows=False), rel=0.2)
+
+
 def test_what_is_all_hole_is_not_there():
     """Masks of opacity 0 over any model, common or not, alone in the scene."""
     for inner in ({"type": "diffuse"}, {"type": "principled"}, {"type": "metallicroughness"}):

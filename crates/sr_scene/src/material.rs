@@ -210,12 +210,15 @@ pub struct Tilting {
     pub flip_invalid_normals: bool,
     /// Is light at grazing angles dimmed, as the bumps' shadows would?
     pub shadows: bool,
+    /// Of a normal map: is its bitangent on the side to which v grows, also where texture coordinates are mirrored, as in
+    /// glTF? Otherwise it is the shading normal's cross product with the tangent, as in Mitsuba and pbrt.
+    pub along_v: bool,
 }
 
 impl Default for Tilting {
-    /// Both.
+    /// As Mitsuba does.
     fn default() -> Self {
-        Self { flip_invalid_normals: true, shadows: true }
+        Self { flip_invalid_normals: true, shadows: true, along_v: false }
     }
 }
 

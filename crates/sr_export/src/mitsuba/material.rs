@@ -212,6 +212,10 @@ impl Writer<'_> {
                 begin(xml, "normalmap");
                 self.color(xml, "normalmap", *normal);
                 tilt(xml, *tilting);
+                let instead = "where these are mirrored, normals tilt the other way across the tangent";
+                if tilting.along_v && self.own("normal map whose bitangent is along v", span, instead) {
+                    xml.boolean("along_v", true);
+                }
                 xml.reference(None, &inner);
                 xml.end();
             }
@@ -400,7 +404,7 @@ fn distribution(kind: MicrofacetKind) -> &'static str {
 }
 
 fn tilt(xml: &mut Xml, tilting: Tilting) {
-    if tilting != Tilting::default() {
+    if !(tilting.flip_invalid_normals && tilting.shadows) {
         xml.boolean("flip_invalid_normals", tilting.flip_invalid_normals);
         xml.boolean("use_shadowing_function", tilting.shadows);
     }

@@ -2,9 +2,7 @@
 
 use sr_bsdf::RoughPlasticTables;
 use sr_bsdf::interface::diffuse_reflectance as diffuse_reflectance_of;
-use sr_scene::{
-    ColorInput, MaterialDesc, MaterialId, MicrofacetKind, Rgb, ScalarInput, Span, TextureId, Tilting,
-};
+use sr_scene::{ColorInput, MaterialDesc, MaterialId, MicrofacetKind, Rgb, ScalarInput, Span, TextureId};
 
 use super::Writer;
 use super::text::Params;
@@ -267,9 +265,14 @@ impl Writer<'_> {
                 self.mixture(&name, *weight, [&first, &second]);
             }
             MaterialDesc::BumpMap { tilting, inner, .. } | MaterialDesc::NormalMap { tilting, inner, .. } => {
-                if *tilting != (Tilting { flip_invalid_normals: false, shadows: false }) {
+                if tilting.flip_invalid_normals || tilting.shadows {
                     let message = "pbrt's tilted normals cast no shadows";
                     let instead = "surfaces of bump maps and normal maps are a little brighter";
+                    self.notes.push("convert::tilted-normals", span, message, instead);
+                }
+                if tilting.along_v {
+                    let message = "pbrt's normal maps do not follow mirrored texture coordinates";
+                    let instead = "where these are mirrored, normals tilt the other way across the tangent";
                     self.notes.push("convert::tilted-normals", span, message, instead);
                 }
                 if tilt.is_some() {

@@ -74,7 +74,8 @@ impl Document<'_, '_> {
             let scale = self.number(info, "scale", 1.0) as f32;
             if let Some(normal) = self.texture(info, Part::Normal(scale.to_bits()), &mut sets) {
                 let inner = self.out.add_material(desc, span);
-                desc = MaterialDesc::NormalMap { normal, tilting: Tilting::default(), inner };
+                let tilting = Tilting { along_v: true, ..Tilting::default() };
+                desc = MaterialDesc::NormalMap { normal, tilting, inner };
             }
         }
         let mut id = self.out.add_material(desc, span);

@@ -112,7 +112,11 @@ impl TiltSource {
                 let normal = u.with_z(slope.x).cross(v.with_z(slope.y));
                 if normal.z < 0.0 { -normal } else { normal }
             }
-            NormalSource::Map(color) => 2.0 * place.color(color) - Vec3::ONE,
+            NormalSource::Map(color) => {
+                let normal = 2.0 * place.color(color) - Vec3::ONE;
+                let is_turned = self.tilting.along_v && place.tangents[1].y < 0.0;
+                if is_turned { Vec3::new(normal.x, -normal.y, normal.z) } else { normal }
+            }
         };
         let turned = |n: Vec3| Vec3::new(-n.x, -n.y, n.z);
         let normal = if self.is_mirrored { turned(normal) } else { normal };

@@ -196,6 +196,7 @@ impl<'a> Lowering<'a, '_> {
         Tilting {
             flip_invalid_normals: flip.unwrap_or(default.flip_invalid_normals),
             shadows: props.boolean("use_shadowing_function", self.out.d).unwrap_or(default.shadows),
+            along_v: props.boolean("along_v", self.out.d).unwrap_or(default.along_v),
         }
     }
 

@@ -297,7 +297,7 @@ impl Reader<'_> {
     /// With the normals that `normalmap` or `displacement` make.
     fn tilted(&mut self, inner: MaterialId, params: &mut Params) -> MaterialId {
         let span = params.span.clone();
-        let tilting = Tilting { flip_invalid_normals: false, shadows: false };
+        let tilting = Tilting { flip_invalid_normals: false, shadows: false, along_v: false };
         if let Some((span, file)) = params.string("normalmap").filter(|(_, file)| !file.is_empty()) {
             let image = self.out.image_file(&file, Decode::Raw, &span);
             let to_uv =
