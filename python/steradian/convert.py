@@ -16,7 +16,14 @@ from steradian.scene import as_text, checked_folders, checked_threads
 
 @dataclass(frozen=True)
 class Converted:
-    """What was written."""
+    """What was written.
+
+    Example:
+        >>> from pathlib import Path
+        >>> done = Converted((Path("box/mesh.ply"), Path("box.xml")), diagnostics=(), seconds=0.1)
+        >>> done.scene.name, done.approximations
+        ('box.xml', ())
+    """
 
     files: tuple[Path, ...]
     """All files: meshes, images, and the scene itself as the last one."""
@@ -49,6 +56,19 @@ def convert(
     """Writes a scene in another format.
 
     Meshes and images go to a folder beside ``out``, of its name without the extension.
+
+    Example:
+        >>> import tempfile
+        >>> scene = {
+        ...     "type": "scene",
+        ...     "camera": {"type": "perspective", "fov": 40},
+        ...     "sky": {"type": "constant"},
+        ...     "ball": {"type": "sphere", "center": [0, 0, 4]},
+        ... }
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     done = convert(scene, f"{folder}/ball.xml")
+        ...     done.scene.name, done.scene.read_text().count("<shape")
+        ('ball.xml', 1)
 
     Args:
         source: what :func:`steradian.load` takes.
