@@ -11,7 +11,6 @@ Left out are the scenes with media, and ``various_shapes``, of which three meshe
 
 from __future__ import annotations
 
-import os
 import warnings
 
 import numpy as np
@@ -23,6 +22,7 @@ from test_references import (
     largest_around,
     mean_differs,
     read_exr,
+    require,
     worst_z,
     z_limit,
 )
@@ -47,11 +47,7 @@ WITH_A_ROUNDED_SKY = "orthographic_sensor/test_orthographic_path"
 
 def compare(name: str) -> Comparison:
     """Renders a scene at the size of its reference."""
-    if not SUITE.is_dir():
-        message = f"{SUITE} is not there; set STERADIAN_SCENES to the folder with the reference scenes"
-        if os.environ.get("CI") == "true":
-            pytest.fail(message)
-        pytest.skip(message)
+    require(SUITE)
     scene_path = SUITE / "tests" / f"{name}.xml"
     references = scene_path.parent / "refs"
     reference = read_exr(references / f"{CASES[name]}_ref_rgb.exr")
