@@ -66,7 +66,7 @@ def read_exr(path: Path) -> np.ndarray:
 
 
 def require(folder: Path) -> None:
-    """Fails under CI without a folder of reference scenes; elsewhere skips: they are no part of the project."""
+    """Fails under CI without a folder of reference scenes; skips elsewhere: the project has none."""
     if not folder.is_dir():
         message = f"{folder} is not there; set STERADIAN_SCENES to the folder with the reference scenes"
         if os.environ.get("CI") == "true":
