@@ -44,7 +44,7 @@ impl AlbedoTable {
         Self::new(|cos| {
             mean_over_visible_normals(d, cos, |wo, m| {
                 let wi = crate::interface::reflect_about(wo, m);
-                if wi.z > 0.0 { reflects(wo.dot(m)) * d.g1(wi) } else { 0.0 }
+                if wi.z > 0.0 { reflects(wo.dot(m)) * d.g2_over_g1(wo, wi) } else { 0.0 }
             })
         })
     }

@@ -7,6 +7,7 @@ use sr_sampling::warp::CosineHemisphere;
 use crate::albedo_table::{AlbedoTable, mean_of_diffuse};
 use crate::conductor::Metal;
 use crate::interface::{dielectric, reflect, reflect_about};
+use crate::layer_walk::{BOUNCES, leaves_after};
 use crate::microfacet::Facet;
 use crate::rough_coat::mean_where_it_jumps;
 use crate::{Bsdf, BsdfSample, Lobes, Microfacet, MicrofacetKind, Rgb, RoughConductor};
@@ -17,21 +18,38 @@ pub struct CoatedConductorTables {
     /// `None`: smooth.
     coat: Option<Microfacet>,
     eta: f32,
+    /// The metal's facets, as they are seen through the coat.
     base: Microfacet,
     /// What the coat reflects.
     reflected: AlbedoTable,
+    /// What the coat lets through, in either direction.
+    passes: AlbedoTable,
     /// What coat and base reflect with one bounce each, if the base reflects all that it receives.
     single: AlbedoTable,
+    /// All but what bounces off the base more than once, if it reflects all that it receives.
+    wide: AlbedoTable,
+    colors: Colors,
+}
+
+/// The colors of light that bounces off the metal more than once.
+#[derive(Clone, Debug, PartialEq)]
+enum Colors {
+    /// Of a coat that loses nothing: [`AlbedoTable::color_of_bounces`].
+    Lossless,
+    /// Shares of two, three, … bounces.
+    Shares([f32; BOUNCES - 1]),
 }
 
 impl CoatedConductorTables {
+    /// Of a coat that loses nothing.
+    ///
     /// - `coat_alpha`: roughness of the coat; 0 is smooth
     /// - `eta`: index of the coat over that of its surroundings, at least 1
     /// - `base_alpha`: roughness of the metal
-    pub fn new(kind: MicrofacetKind, coat_alpha: f32, eta: f32, base_alpha: f32) -> Self {
+    pub fn lossless(kind: MicrofacetKind, coat_alpha: f32, eta: f32, base_alpha: f32) -> Self {
         let eta = eta.max(1.0);
         let coat = (coat_alpha > 0.0).then(|| Microfacet::isotropic(kind, coat_alpha));
-        let base = Microfacet::isotropic(kind, base_alpha);
+        let base = Microfacet::isotropic(kind, alpha_through_coat(base_alpha, coat_alpha, eta));
         let reflected = match &coat {
             Some(coat) => AlbedoTable::of_reflection(coat, |cos| dielectric(cos, eta).reflectance),
             None => AlbedoTable::new(|cos| dielectric(cos, eta).reflectance),
@@ -42,14 +60,84 @@ impl CoatedConductorTables {
             let through = mean_where_it_jumps(&base, inside, |wo, m| {
                 let wi = reflect_about(wo, m);
                 match leave(wi, eta) {
-                    Some(out) if wi.z > 0.0 => base.g1(wi) * reflected.left(out.z),
+                    Some(out) if wi.z > 0.0 => base.g2_over_g1(wo, wi) * reflected.left(out.z),
                     _ => 0.0,
                 }
             });
             reflected.at(cos) + reflected.left(cos) * through
         });
-        Self { coat, eta, base, reflected, single }
+        let passes = AlbedoTable::new(|cos| reflected.left(cos));
+        let wide = single.clone();
+        Self { coat, eta, base, reflected, passes, single, wide, colors: Colors::Lossless }
     }
+
+    /// Of layers that scatter by one bounce between facets each, and lose what bounces more often: as much as light that
+    /// walks between them, and off the metal at most so many times.
+    ///
+    /// The other parameters are those of [`Self::lossless`].
+    pub fn walked(kind: MicrofacetKind, coat_alpha: f32, eta: f32, base_alpha: f32, times: u32) -> Self {
+        let eta = eta.max(1.0);
+        let coat = (coat_alpha > 0.0).then(|| Microfacet::isotropic(kind, coat_alpha));
+        let metal = Microfacet::isotropic(kind, base_alpha);
+        let base = Microfacet::isotropic(kind, alpha_through_coat(base_alpha, coat_alpha, eta));
+        let reflected = match &coat {
+            Some(coat) => AlbedoTable::of_reflection(coat, |cos| dielectric(cos, eta).reflectance),
+            None => AlbedoTable::new(|cos| dielectric(cos, eta).reflectance),
+        };
+        let times = (times as usize).clamp(1, BOUNCES);
+        let bounces = |cos: f32| {
+            let mut leaves = leaves_after(coat.as_ref(), eta, &metal, cos);
+            leaves[times..].fill(0.0);
+            leaves
+        };
+        let once = AlbedoTable::new(|cos| bounces(cos)[0]);
+        let wide = AlbedoTable::new(|cos| 1.0 - bounces(cos)[1..].iter().sum::<f32>());
+        // Of diffuse light, by the midpoint rule in cos².
+        let mut shares = [0.0; BOUNCES - 1];
+        for i in 0..16 {
+            let more = bounces(((i as f32 + 0.5) / 16.0).sqrt());
+            shares.iter_mut().zip(&more[1..]).for_each(|(share, fraction)| *share += fraction);
+        }
+        let sum = shares.iter().sum::<f32>().max(f32::MIN_POSITIVE);
+        let colors = Colors::Shares(shares.map(|share| share / sum));
+        // Symmetric factors for which the metal's lobe, seen through the coat, holds what the walks found: p(μ) ∫ f p = once(μ).
+        let seen = |passes: &AlbedoTable, cos: f32| {
+            mean_where_it_jumps(&base, dielectric(cos, eta).cos_t, |wo, m| {
+                let wi = reflect_about(wo, m);
+                match leave(wi, eta) {
+                    Some(out) if wi.z > 0.0 => base.g2_over_g1(wo, wi) * passes.at(out.z),
+                    _ => 0.0,
+                }
+            })
+        };
+        let mut passes = AlbedoTable::new(|cos| once.at(cos).sqrt());
+        for _ in 0..2 {
+            passes = AlbedoTable::new(|cos| {
+                let p = passes.at(cos);
+                p * (once.at(cos) / (p * seen(&passes, cos)).max(f32::MIN_POSITIVE)).sqrt()
+            });
+        }
+        let single = AlbedoTable::new(|cos| reflected.at(cos) + passes.at(cos) * seen(&passes, cos));
+        Self { coat, eta, base, reflected, passes, single, wide, colors }
+    }
+
+    fn color_of_bounces(&self, f: Rgb) -> Rgb {
+        match &self.colors {
+            Colors::Lossless => self.single.color_of_bounces(f),
+            // Horner's rule: f² (s₂ + f (s₃ + …)).
+            Colors::Shares(shares) => {
+                f * f * shares.iter().rev().fold(Rgb::ZERO, |sum, &share| sum * f + Rgb::splat(share))
+            }
+        }
+    }
+}
+
+/// The roughness of a metal seen through a rough coat of index `eta`: slopes add up. Light that passes a facet tilted by θ is
+/// turned by (η − 1) θ outside, and by 2 η θ off the metal (after Belcour 2018, "Efficient Rendering of Layered Materials
+/// using an Atomic Decomposition with Statistical Operators", section 4).
+fn alpha_through_coat(base_alpha: f32, coat_alpha: f32, eta: f32) -> f32 {
+    let blur = (eta - 1.0) / (2.0 * eta) * coat_alpha;
+    (base_alpha * base_alpha + 2.0 * blur * blur).sqrt()
 }
 
 /// A direction outside, bent as it enters a coat, pointing away from the base.
@@ -70,8 +158,9 @@ fn leave(w: Vec3, eta: f32) -> Option<Vec3> {
 ///
 /// Three lobes. The coat reflects. What it lets in, T(μₒ), is bent as by a smooth interface, reflected once by the metal,
 /// and bent back: f = T(μₒ) T(μᵢ) f_metal(wo′, wi′) / η² (Weidlich & Wilkie 2007, "Arbitrarily Layered Micro-Facet
-/// Surfaces"). All further bounces between coat and metal are one wide lobe that holds exactly what is missing
-/// ([`AlbedoTable`]). So it is reciprocal, a metal that reflects everything stays white, and the density is exact.
+/// Surfaces"); a rough coat makes the metal rougher. All further bounces between coat and metal are one wide lobe. It holds
+/// exactly what is missing ([`AlbedoTable`]), so that a metal that reflects everything stays white, or what light that walks
+/// between the layers has. So it is reciprocal, and the density is exact.
 #[derive(Clone, Copy, Debug)]
 pub struct CoatedConductor<'a> {
     tables: &'a CoatedConductorTables,
@@ -91,7 +180,7 @@ impl<'a> CoatedConductor<'a> {
             tables,
             metal: RoughConductor::new(tables.base, below, reflectance),
             reflectance: mean,
-            color: tables.single.color_of_bounces(mean),
+            color: tables.color_of_bounces(mean),
         }
     }
 
@@ -101,7 +190,7 @@ impl<'a> CoatedConductor<'a> {
         let t = self.tables;
         let coat = t.reflected.at(cos);
         let metal = (t.single.at(cos) - coat).max(0.0) * self.reflectance.max_element();
-        let wide = t.single.left(cos).max(0.0) * self.color.max_element();
+        let wide = t.wide.left(cos).max(0.0) * self.color.max_element();
         let sum = coat + metal + wide;
         if sum > 0.0 { [coat, metal, wide].map(|p| p / sum) } else { [0.0; 3] }
     }
@@ -112,11 +201,11 @@ impl<'a> CoatedConductor<'a> {
         if wo.z <= 0.0 || wi.z <= 0.0 {
             return (Rgb::ZERO, 0.0);
         }
-        let CoatedConductorTables { coat, eta, reflected, single, .. } = self.tables;
+        let CoatedConductorTables { coat, eta, passes, wide, .. } = self.tables;
         let [p_coat, p_metal, p_wide] = self.choice(wo.z);
         let (wo_in, wi_in) = (enter(wo, *eta), enter(wi, *eta));
-        let passes = reflected.left(wo.z) * reflected.left(wi.z) / (eta * eta);
-        let mut f = self.metal.eval(wo_in, wi_in) * passes + self.color * single.lobe(wo, single, wi);
+        let passes = passes.at(wo.z) * passes.at(wi.z) / (eta * eta);
+        let mut f = self.metal.eval(wo_in, wi_in) * passes + self.color * wide.lobe(wo, wide, wi);
         // cos θ′ dω′ = cos θ dω / η².
         let bent = wi.z / (eta * eta * wi_in.z);
         let mut pdf = p_metal * self.metal.pdf(wo_in, wi_in) * bent + p_wide * CosineHemisphere.pdf(wi);
@@ -172,8 +261,8 @@ impl Bsdf for CoatedConductor<'_> {
     }
 
     fn albedo(&self) -> Rgb {
-        let CoatedConductorTables { reflected, single, .. } = self.tables;
+        let CoatedConductorTables { reflected, single, wide, .. } = self.tables;
         let coat = reflected.at(1.0);
-        Rgb::splat(coat) + (single.at(1.0) - coat) * self.reflectance + single.left(1.0) * self.color
+        Rgb::splat(coat) + (single.at(1.0) - coat) * self.reflectance + wide.left(1.0) * self.color
     }
 }

@@ -31,7 +31,9 @@ impl DielectricTables {
                 mean_over_visible_normals(&distribution, cos, |wo, m| {
                     let split = dielectric(wo.dot(m), eta);
                     let (mirrored, refracted) = (reflect_about(wo, m), refract_about(wo, m, split));
-                    let seen = |w: Vec3, is_there: bool| if is_there { distribution.g1(w) } else { 0.0 };
+                    let seen = |wi: Vec3, is_there: bool| {
+                        if is_there { distribution.g2_over_g1(wo, wi) } else { 0.0 }
+                    };
                     split.reflectance * seen(mirrored, mirrored.z > 0.0)
                         + split.transmittance * seen(refracted, refracted.z < 0.0)
                 })

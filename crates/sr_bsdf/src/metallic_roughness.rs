@@ -277,7 +277,7 @@ impl MetallicRoughness {
     fn refracted(&self, wo: Vec3, wi: Vec3, eta: f32, m: Vec3, transmits: f32, p: f32) -> (Rgb, f32) {
         let cos_i = -wi.dot(m);
         let length2 = (wo.dot(m) - eta * cos_i).powi(2);
-        let area = self.gloss.projected_area(wo) * self.gloss.projected_area(wi);
+        let area = self.gloss.joint_area(wo, wi);
         let outside = if eta > 1.0 { wo.z } else { -wi.z };
         let scale = self.transmits() * transmits * self.passes(outside, 1.0) * wo.dot(m) * cos_i / length2;
         let pdf = p * self.gloss.visible_pdf(wo, m) * eta * eta * cos_i / length2;

@@ -5,7 +5,8 @@
 //! G₁(w) = |cos θ| / σ(w): σ has no pole or 0/0 at grazing angles.
 //!
 //! Masking and shadowing are taken as independent, G = G₁(wo) G₁(wi), as Mitsuba does (its images then
-//! agree with ours) and not height-correlated; a facet seen from below its own face is masked.
+//! agree with ours), or, with [`MicrofacetKind::GgxCorrelated`], as correlated by height, as pbrt does; a facet seen from
+//! below its own face is masked.
 
 use std::f32::consts::FRAC_1_PI;
 
@@ -117,12 +118,27 @@ impl<S: MicrofacetShape> Microfacet<S> {
         self.shape.projected_area(w.z.abs(), spread.length_squared())
     }
 
-    /// Smith's G₁(w): the fraction of the facets facing `w` that are seen from there.
+    /// cos θₒ cos θᵢ / G(wo, wi): of a facet, what is common to all that it does. Positive.
     ///
-    /// It depends on `w` only; that `w` sees the facet from above is for the caller to know.
+    /// Smith's G depends on the directions only; that they see the facet from above is for the caller to know.
     #[inline(always)]
-    pub fn g1(&self, w: Vec3) -> f32 {
-        (w.z.abs() / self.projected_area(w)).min(1.0)
+    pub(crate) fn joint_area(&self, wo: Vec3, wi: Vec3) -> f32 {
+        let side = |w: Vec3| [w.z.abs(), self.projected_area(w)];
+        self.shape.joint_area(side(wo), side(wi))
+    }
+
+    /// G(wo, wi) / (G₁(wo) cos θᵢ) = 1 / σ(wi), if masking and shadowing are independent: what makes the density of a
+    /// direction sampled by visible normals into f.
+    #[inline(always)]
+    pub(crate) fn shadowing(&self, wo: Vec3, wi: Vec3) -> f32 {
+        let side = |w: Vec3| [w.z.abs(), self.projected_area(w)];
+        self.shape.shadowing(side(wo), side(wi))
+    }
+
+    /// G(wo, wi) / G₁(wo): of the facets that `wo` sees, the fraction that `wi` sees too.
+    #[inline(always)]
+    pub fn g2_over_g1(&self, wo: Vec3, wi: Vec3) -> f32 {
+        (wi.z.abs() * self.shadowing(wo, wi)).min(1.0)
     }
 
     /// Draws a normal `m` of those seen from `wo`, with density [`Self::visible_pdf`]. wo.z > 0.
@@ -143,7 +159,7 @@ impl<S: MicrofacetShape> Microfacet<S> {
     /// D G / (4 cos θₒ cos θᵢ), in sr⁻¹: the facets that are mirrors between `wo` and `wi`.
     #[inline(always)]
     pub(crate) fn reflection(&self, wo: Vec3, wi: Vec3, mirror: &Facet) -> f32 {
-        self.facets(mirror) / (4.0 * self.projected_area(wo) * self.projected_area(wi))
+        self.facets(mirror) / (4.0 * self.joint_area(wo, wi))
     }
 
     /// The density in sr⁻¹ of `wo` mirrored about a visible normal, where that normal is the facet's.
@@ -159,7 +175,8 @@ impl<S: MicrofacetShape> Microfacet<S> {
 mod tests {
     use super::*;
 
-    const KINDS: [MicrofacetKind; 2] = [MicrofacetKind::Beckmann, MicrofacetKind::Ggx];
+    const KINDS: [MicrofacetKind; 3] =
+        [MicrofacetKind::Beckmann, MicrofacetKind::Ggx, MicrofacetKind::GgxCorrelated];
 
     /// ∫ f(m) dm over the upper hemisphere, by the midpoint rule in (θ², φ): fine near the pole.
     fn hemisphere_integral(f: impl Fn(Vec3) -> f32) -> f64 {
@@ -248,6 +265,26 @@ mod tests {
                     / f64::from(n * n);
                 assert!((mean - by_density).abs() < 1e-3, "{kind:?} {axis}: {mean}, not {by_density}");
             }
+        }
+    }
+
+    /// Smith's G of either kind, from σ by definition; correlated, no less than independent, and no more than either G₁.
+    #[test]
+    fn masking_and_shadowing() {
+        let (wo, wi) = (Vec3::new(0.6, 0.0, 0.8), Vec3::new(-0.36, 0.9, 0.245_8).normalize());
+        for kind in KINDS {
+            let d = Microfacet::new(kind, 0.5, 0.9);
+            let lambda = |w: Vec3| d.projected_area(w) / w.z - 1.0;
+            let expected = match kind {
+                MicrofacetKind::GgxCorrelated => 1.0 / (1.0 + lambda(wo) + lambda(wi)),
+                _ => 1.0 / ((1.0 + lambda(wo)) * (1.0 + lambda(wi))),
+            };
+            let got = wo.z * wi.z / d.joint_area(wo, wi);
+            assert!((got / expected - 1.0).abs() < 1e-5, "{kind:?}: {got}, not {expected}");
+            let ratio = d.g2_over_g1(wo, wi) / (1.0 + lambda(wo));
+            assert!((ratio / expected - 1.0).abs() < 1e-5, "{kind:?}: {ratio}, not {expected}");
+            let (grazing, opposite) = (Vec3::X, -Vec3::X);
+            assert!(d.joint_area(grazing, opposite) > 0.0 && d.g2_over_g1(grazing, opposite) <= 1.0);
         }
     }
 

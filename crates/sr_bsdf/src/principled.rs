@@ -208,7 +208,7 @@ impl Principled {
         let Pair { wo, wi, eta, is_front } = pair;
         let Some(facet) = refracting_facet(wo, wi, eta) else { return nothing };
         let d = &self.distribution;
-        let area = d.projected_area(wo) * d.projected_area(wi);
+        let area = d.joint_area(wo, wi);
         let scale = self.bsdf * facet.factor * facet.cos_o * d.d(facet.m) / area;
         let share = if is_front { self.bsdf } else { 1.0 };
         let pdf = self.main(is_front) * share * facet.factor * eta * eta * d.visible_pdf(wo, facet.m);
@@ -225,7 +225,8 @@ impl Principled {
         let jacobian = eta * eta * split.cos_t / (half_length * half_length);
         let chosen = self.main(is_front) * self.transmits(split, is_front);
         let pdf = chosen * self.distribution.visible_pdf(wo, m) * jacobian;
-        let scale = self.bsdf * split.transmittance / chosen * self.distribution.g1(wi) / (eta * eta);
+        let scale =
+            self.bsdf * split.transmittance / chosen * self.distribution.g2_over_g1(wo, wi) / (eta * eta);
         let weight = self.base_color.map(f32::sqrt) * scale;
         (wi.z < 0.0 && pdf > 0.0 && pdf.is_finite()).then_some(BsdfSample {
             wi,

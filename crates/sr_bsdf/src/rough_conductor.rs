@@ -49,7 +49,7 @@ impl<S: MicrofacetShape> Bsdf for RoughConductor<S> {
         let m = self.distribution.sample_visible(wo, u);
         let wi = reflect_about(wo, m);
         let pdf = self.distribution.reflection_pdf(wo, &Facet::of(m));
-        let weight = self.metal.reflectance(wo.dot(m)) * self.distribution.g1(wi);
+        let weight = self.metal.reflectance(wo.dot(m)) * self.distribution.g2_over_g1(wo, wi);
         (wi.z > 0.0 && pdf > 0.0).then_some(BsdfSample { wi, weight, pdf, delta: false, eta: 1.0 })
     }
 

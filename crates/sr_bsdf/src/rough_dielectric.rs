@@ -91,7 +91,7 @@ impl<S: MicrofacetShape> Bsdf for RoughDielectric<S> {
             return self.reflectance * (f * self.distribution.reflection(wo, wi, &mirror));
         }
         let Some(facet) = refracting_facet(wo, wi, eta) else { return Rgb::ZERO };
-        let area = self.distribution.projected_area(wo) * self.distribution.projected_area(wi);
+        let area = self.distribution.joint_area(wo, wi);
         self.transmittance * (facet.factor * facet.cos_o * self.distribution.d(facet.m) / area)
     }
 
@@ -126,8 +126,8 @@ impl<S: MicrofacetShape> Bsdf for RoughDielectric<S> {
             let pdf = split.transmittance * self.distribution.visible_pdf(wo, m) * jacobian;
             BsdfSample { wi, weight: self.transmittance / (eta * eta), pdf, delta: false, eta }
         };
+        let weight = sample.weight * self.distribution.g2_over_g1(wo, sample.wi);
         let wi = if above { sample.wi } else { flip(sample.wi) };
-        let weight = sample.weight * self.distribution.g1(wi);
         (sample.pdf > 0.0).then_some(BsdfSample { wi, weight, ..sample })
     }
 

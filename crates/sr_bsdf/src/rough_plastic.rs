@@ -71,7 +71,7 @@ impl<'a, S: MicrofacetShape> RoughPlastic<'a, S> {
         let distribution = &self.distribution;
         let mirrored = distribution.reflection_pdf(wo, mirror);
         let f = dielectric(mirror.half_cos(), self.eta).reflectance;
-        let specular = self.specular * (f * mirrored / distribution.projected_area(wi));
+        let specular = self.specular * (f * mirrored * distribution.shadowing(wo, wi));
         let diffuse = self.base * (t_o * self.coat.transmittance(wi.z) * FRAC_1_PI);
         (specular + diffuse, p.specular * mirrored + p.diffuse * CosineHemisphere.pdf(wi))
     }

@@ -264,6 +264,7 @@ fn materials() -> Vec<(&'static str, SceneDesc)> {
                 alpha: 0.2,
                 eta_k: metal,
                 specular_reflectance: WHITE,
+                bounces: None,
             }),
         ),
         ("principled", opaque(MaterialDesc::Principled(principled))),

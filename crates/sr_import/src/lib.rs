@@ -25,7 +25,6 @@ mod mesh_file;
 mod mitsuba;
 mod pbrt;
 mod pfm;
-mod spectra;
 mod support;
 mod values;
 

@@ -44,6 +44,11 @@ pub fn srgb_to_linear(encoded: f64) -> f64 {
     if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }
 
+/// A linear value in [0, 1], sRGB-encoded (IEC 61966-2-1).
+pub fn linear_to_srgb(linear: f64) -> f64 {
+    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+}
+
 /// (wavelength, value) pairs of the form `400:0.1, 500:0.2`, wavelengths increasing.
 pub fn spectrum_pairs(text: &str) -> Result<Vec<(f64, f64)>, String> {
     let pairs = text

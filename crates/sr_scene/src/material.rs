@@ -27,6 +27,8 @@ pub enum MicrofacetKind {
     Beckmann,
     /// GGX, also called Trowbridge–Reitz: longer tails.
     Ggx,
+    /// GGX whose masking and shadowing are correlated by height (pbrt's); [`Self::Ggx`] takes them as independent.
+    GgxCorrelated,
 }
 
 /// A scattering model and its inputs. `eta` is always interior over exterior index of refraction.
@@ -153,6 +155,9 @@ pub enum MaterialDesc {
         eta_k: Option<(ColorInput, ColorInput)>,
         /// Scales what the metal reflects; physically 1.
         specular_reflectance: ColorInput,
+        /// How often light may meet the metal, 1 to 16 times; it is then lost, and so is what bounces between facets. `None`:
+        /// nothing is lost.
+        bounces: Option<u32>,
     },
     /// Burley's model with transmission.
     Principled(PrincipledDesc),

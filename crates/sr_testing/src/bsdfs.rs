@@ -17,7 +17,8 @@ use crate::{blends, compensated, principled};
 /// A name that tells cases apart, a model, and a direction from which it reflects or transmits.
 pub type BsdfCase = (String, AnyBsdf<'static>, Vec3);
 
-const KINDS: [MicrofacetKind; 2] = [MicrofacetKind::Beckmann, MicrofacetKind::Ggx];
+const KINDS: [MicrofacetKind; 3] =
+    [MicrofacetKind::Beckmann, MicrofacetKind::Ggx, MicrofacetKind::GgxCorrelated];
 const ALPHAS: [[f32; 2]; 6] = [[0.01, 0.01], [0.1, 0.1], [0.5, 0.5], [1.0, 1.0], [0.05, 0.4], [0.6, 0.15]];
 const COAT_ALPHAS: [f32; 3] = [0.05, 0.3, 1.0];
 

@@ -10,7 +10,8 @@ use sr_bsdf::{
 
 use crate::bsdfs::{COPPER, GREEN, PINK};
 
-const KINDS: [MicrofacetKind; 2] = [MicrofacetKind::Beckmann, MicrofacetKind::Ggx];
+const KINDS: [MicrofacetKind; 3] =
+    [MicrofacetKind::Beckmann, MicrofacetKind::Ggx, MicrofacetKind::GgxCorrelated];
 const ALPHAS: [f32; 3] = [0.1, 0.5, 1.0];
 
 struct Tables {
@@ -20,6 +21,8 @@ struct Tables {
     glass: DielectricTables,
     /// A smooth coat, and a rough one.
     coated: [CoatedConductorTables; 2],
+    /// Rough layers that lose light.
+    walked: CoatedConductorTables,
     plastic: RoughPlasticTables,
 }
 
@@ -29,7 +32,8 @@ static TABLES: LazyLock<Vec<Tables>> = LazyLock::new(|| {
         alpha,
         metal: CompensatedConductor::table(kind, alpha),
         glass: DielectricTables::new(kind, alpha, 1.5),
-        coated: [0.0, 0.3].map(|coat| CoatedConductorTables::new(kind, coat, 1.5, alpha)),
+        coated: [0.0, 0.3].map(|coat| CoatedConductorTables::lossless(kind, coat, 1.5, alpha)),
+        walked: CoatedConductorTables::walked(kind, 0.3, 1.5, alpha, 5),
         plastic: RoughPlasticTables::lossless(kind, alpha, 1.5),
     };
     KINDS.into_iter().flat_map(|kind| ALPHAS.map(|alpha| tables(kind, alpha))).collect()
@@ -37,7 +41,11 @@ static TABLES: LazyLock<Vec<Tables>> = LazyLock::new(|| {
 
 /// Coloured ones.
 pub(crate) fn models() -> Vec<(String, AnyBsdf<'static>)> {
-    named("", Some(COPPER), [GREEN, PINK])
+    let walked = TABLES.iter().map(|t| {
+        let model = CoatedConductor::new(&t.walked, Some(COPPER), PINK);
+        (format!("lossy coated conductor {:?} {}", t.kind, t.alpha), model.into())
+    });
+    walked.chain(named("", Some(COPPER), [GREEN, PINK])).collect()
 }
 
 /// Lossless ones: a furnace has to be white. The names begin with "white".

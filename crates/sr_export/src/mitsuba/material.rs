@@ -55,7 +55,7 @@ impl Writer<'_> {
                 multiscatter,
             } => {
                 begin(xml, "roughdielectric");
-                xml.string("distribution", distribution(*kind));
+                self.distribution(xml, *kind, span);
                 self.alpha(xml, *alpha);
                 index(xml, *eta);
                 self.factor(xml, "specular_reflectance", *specular_reflectance);
@@ -71,7 +71,7 @@ impl Writer<'_> {
             }
             MaterialDesc::RoughConductor { kind, alpha, eta_k, specular_reflectance, multiscatter } => {
                 begin(xml, "roughconductor");
-                xml.string("distribution", distribution(*kind));
+                self.distribution(xml, *kind, span);
                 self.alpha(xml, *alpha);
                 self.metal(xml, *eta_k);
                 self.factor(xml, "specular_reflectance", *specular_reflectance);
@@ -96,7 +96,7 @@ impl Writer<'_> {
                 multiscatter,
             } => {
                 begin(xml, "roughplastic");
-                xml.string("distribution", distribution(*kind));
+                self.distribution(xml, *kind, span);
                 xml.float("alpha", *alpha);
                 index(xml, *eta);
                 self.color(xml, "diffuse_reflectance", *diffuse_reflectance);
@@ -155,15 +155,26 @@ impl Writer<'_> {
                     xml.end();
                 }
             }
-            MaterialDesc::CoatedConductor { kind, coat_alpha, eta, alpha, eta_k, specular_reflectance } => {
+            MaterialDesc::CoatedConductor {
+                kind,
+                coat_alpha,
+                eta,
+                alpha,
+                eta_k,
+                specular_reflectance,
+                bounces,
+            } => {
                 let is_own =
                     self.own("bsdf \"coatedconductor\"", span, "the metal without its coat is written");
                 begin(xml, if is_own { "coatedconductor" } else { "roughconductor" });
-                xml.string("distribution", distribution(*kind));
+                self.distribution(xml, *kind, span);
                 xml.float("alpha", *alpha);
                 if is_own {
                     xml.float("coat_alpha", *coat_alpha);
                     index(xml, *eta);
+                    if let Some(bounces) = bounces {
+                        xml.integer("bounces", i64::from(*bounces));
+                    }
                 }
                 self.metal(xml, *eta_k);
                 self.factor(xml, "specular_reflectance", *specular_reflectance);
@@ -270,6 +281,21 @@ impl Writer<'_> {
                 self.color(xml, "k", k);
             }
         }
+    }
+
+    fn distribution(&mut self, xml: &mut Xml, kind: MicrofacetKind, span: &Span) {
+        let what = "facets whose masking and shadowing are correlated";
+        let name = match kind {
+            MicrofacetKind::Beckmann => "beckmann",
+            MicrofacetKind::Ggx => "ggx",
+            MicrofacetKind::GgxCorrelated
+                if self.own(what, span, "independent ones are, a little darker") =>
+            {
+                "ggx_correlated"
+            }
+            MicrofacetKind::GgxCorrelated => "ggx",
+        };
+        xml.string("distribution", name);
     }
 
     fn multiscatter(&mut self, xml: &mut Xml, multiscatter: bool, span: &Span) {
@@ -394,13 +420,6 @@ impl Writer<'_> {
 fn index(xml: &mut Xml, eta: f32) {
     xml.float("int_ior", eta);
     xml.float("ext_ior", 1.0);
-}
-
-fn distribution(kind: MicrofacetKind) -> &'static str {
-    match kind {
-        MicrofacetKind::Beckmann => "beckmann",
-        MicrofacetKind::Ggx => "ggx",
-    }
 }
 
 fn tilt(xml: &mut Xml, tilting: Tilting) {

@@ -1,7 +1,7 @@
 //! Materials. pbrt's reflect on both sides; holes belong to shapes, tilted normals to the models themselves.
 
-use sr_bsdf::RoughPlasticTables;
 use sr_bsdf::interface::diffuse_reflectance as diffuse_reflectance_of;
+use sr_bsdf::{RoughPlasticTables, rough_internal_reflectance};
 use sr_scene::{ColorInput, MaterialDesc, MaterialId, MicrofacetKind, Rgb, ScalarInput, Span, TextureId};
 
 use super::Writer;
@@ -158,12 +158,12 @@ impl Writer<'_> {
                 self.named(&name, "dielectric", params, tilt);
             }
             MaterialDesc::Conductor { eta_k, specular_reflectance } => {
-                let params = self.metal(Params::default(), "", *eta_k, *specular_reflectance, span);
+                let params = self.metal(Params::default(), "", *eta_k, *specular_reflectance, (1.0, span));
                 self.named(&name, "conductor", params, tilt);
             }
             MaterialDesc::RoughConductor { kind, alpha, eta_k, specular_reflectance, multiscatter } => {
                 self.facets(*kind, *multiscatter, span);
-                let params = self.metal(Params::default(), "", *eta_k, *specular_reflectance, span);
+                let params = self.metal(Params::default(), "", *eta_k, *specular_reflectance, (1.0, span));
                 let params = self.roughness(params, "", *alpha, Use::Number);
                 self.named(&name, "conductor", params, tilt);
             }
@@ -189,8 +189,9 @@ impl Writer<'_> {
                     true => RoughPlasticTables::lossless(model(*kind), *alpha, *eta),
                     false => RoughPlasticTables::new(model(*kind), *alpha, *eta),
                 };
-                let pbrts = RoughPlasticTables::new(sr_bsdf::MicrofacetKind::Ggx, *alpha, *eta);
-                let coats = Coats::new(ours.internal_reflectance(), pbrts.internal_reflectance(), *nonlinear);
+                let pbrts =
+                    rough_internal_reflectance(sr_bsdf::MicrofacetKind::GgxCorrelated, *alpha, *eta, 0.0);
+                let coats = Coats::new(ours.internal_reflectance(), pbrts, *nonlinear);
                 let params = self.coated(*eta, *diffuse_reflectance, coats);
                 let alpha = [ScalarInput::Constant(*alpha); 2];
                 let params = self.roughness(params, "", alpha, Use::Number);
@@ -201,11 +202,19 @@ impl Writer<'_> {
                 let params = self.color(params, "transmittance", *transmittance, Use::Color);
                 self.named(&name, "diffusetransmission", params, tilt);
             }
-            MaterialDesc::CoatedConductor { kind, coat_alpha, eta, alpha, eta_k, specular_reflectance } => {
-                self.facets(*kind, false, span);
+            MaterialDesc::CoatedConductor {
+                kind,
+                coat_alpha,
+                eta,
+                alpha,
+                eta_k,
+                specular_reflectance,
+                bounces,
+            } => {
+                self.facets(*kind, bounces.is_none(), span);
                 let params = Params::default().float("interface.eta", *eta).float("thickness", 0.0);
-                let params = params.integer("maxdepth", 1000);
-                let params = self.metal(params, "conductor.", *eta_k, *specular_reflectance, span);
+                let params = params.integer("maxdepth", bounces.map_or(1000, |n| 2 * i64::from(n)));
+                let params = self.metal(params, "conductor.", *eta_k, *specular_reflectance, (*eta, span));
                 let same = |alpha: f32| [ScalarInput::Constant(alpha); 2];
                 let params = self.roughness(params, "interface.", same(*coat_alpha), Use::Number);
                 let params = self.roughness(params, "conductor.", same(*alpha), Use::Number);
@@ -334,7 +343,8 @@ impl Writer<'_> {
     /// A diffuse base under a clear coat in which light bounces until it leaves.
     fn coated(&mut self, eta: f32, reflectance: ColorInput, coats: Coats) -> Params {
         let params = Params::default().float("eta", eta).float("thickness", 0.0).integer("maxdepth", 1000);
-        let wanted = if coats == Coats::default() { Use::Color } else { Use::Base(coats) };
+        let is_texture = matches!(reflectance, ColorInput::Texture(_));
+        let wanted = if is_texture && coats.are_the_same() { Use::Color } else { Use::Base(coats) };
         self.color(params, "reflectance", reflectance, wanted)
     }
 
@@ -354,7 +364,7 @@ impl Writer<'_> {
         prefix: &str,
         eta_k: Option<(ColorInput, ColorInput)>,
         reflectance: ColorInput,
-        span: &Span,
+        (above, span): (f32, &Span),
     ) -> Params {
         let Some((eta, k)) = eta_k else {
             if !surfaces::is_white(reflectance) {
@@ -370,8 +380,18 @@ impl Writer<'_> {
             let [eta, k, factor] = [eta, k, reflectance].map(|input| self.baker.average(input));
             return params.rgb("reflectance", surfaces::normal_reflectance(eta, k) * factor);
         }
-        let params = self.color(params, &format!("{prefix}eta"), eta, Use::Color);
-        self.color(params, &format!("{prefix}k"), k, Use::Color)
+        let names = ["eta", "k"].map(|name| format!("{prefix}{name}"));
+        if let (ColorInput::Constant(eta), ColorInput::Constant(k)) = (eta, k) {
+            let is_grey = |color: Rgb| color.min_element() == color.max_element();
+            if is_grey(eta) && is_grey(k) {
+                return params.rgb(&names[0], eta).rgb(&names[1], k);
+            }
+            // pbrt would make other spectra of the colors, and another color of what they reflect.
+            let (eta, k) = sr_spectra::metal_spectra(eta.as_dvec3(), k.as_dvec3(), above.into());
+            return params.spectrum(&names[0], &eta).spectrum(&names[1], &k);
+        }
+        let params = self.color(params, &names[0], eta, Use::Color);
+        self.color(params, &names[1], k, Use::Color)
     }
 
     /// Says that colors of reflections are not written.
@@ -386,6 +406,10 @@ impl Writer<'_> {
         if kind == MicrofacetKind::Beckmann {
             let message = "pbrt has no Beckmann distribution of facets";
             self.notes.push("convert::microfacets", span, message, "GGX of the same roughness is written");
+        }
+        if kind == MicrofacetKind::Ggx {
+            let message = "in pbrt facets that are masked are often those in shadow";
+            self.notes.push("convert::microfacets", span, message, "rough surfaces are a little brighter");
         }
         if multiscatter {
             let message = "in pbrt light that bounces between facets is lost";
@@ -409,7 +433,9 @@ impl Writer<'_> {
                 part
             };
             let coated = (!is_const(base.metallic, 1.0)).then(|| {
-                let params = self.coated(base.eta.max(1.0), base.color, Coats::default());
+                let eta = base.eta.max(1.0);
+                let returned = diffuse_reflectance_of(1.0 / eta);
+                let params = self.coated(eta, base.color, Coats::new(returned, returned, true));
                 part(self, "base", "coateddiffuse", params)
             });
             let metal = (!is_const(base.metallic, 0.0)).then(|| {
@@ -448,5 +474,6 @@ fn model(kind: MicrofacetKind) -> sr_bsdf::MicrofacetKind {
     match kind {
         MicrofacetKind::Beckmann => sr_bsdf::MicrofacetKind::Beckmann,
         MicrofacetKind::Ggx => sr_bsdf::MicrofacetKind::Ggx,
+        MicrofacetKind::GgxCorrelated => sr_bsdf::MicrofacetKind::GgxCorrelated,
     }
 }

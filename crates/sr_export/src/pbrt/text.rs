@@ -46,6 +46,12 @@ impl Params {
         self
     }
 
+    /// Values at wavelengths in nm.
+    pub fn spectrum(self, name: &str, samples: &[(f64, f64)]) -> Self {
+        let numbers: Vec<f32> = samples.iter().flat_map(|&(w, value)| [w as f32, value as f32]).collect();
+        self.floats(&format!("spectrum {name}"), &numbers)
+    }
+
     pub fn rgb(self, name: &str, color: Rgb) -> Self {
         self.floats(&format!("rgb {name}"), &color.to_array())
     }

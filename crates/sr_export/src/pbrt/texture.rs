@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use glam::{Affine2, Mat2, Vec2};
+use glam::{Affine2, DVec3, Mat2, Vec2};
 use sr_scene::{ColorInput, Filter, Image, Pixels, Rgb, ScalarInput, Span, TextureDesc, TextureId, Wrap};
+use sr_spectra::Smooth;
 
 use super::Writer;
 use super::text::Params;
@@ -42,7 +43,7 @@ impl Use {
 }
 
 /// Of diffuse light from the base, how much a coat returns to it; by their bits.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Coats {
     ours: u32,
     pbrts: u32,
@@ -51,11 +52,7 @@ pub(super) struct Coats {
 }
 
 impl Coats {
-    /// What the same coat does to the same base is nothing to write.
     pub fn new(ours: f32, pbrts: f32, nonlinear: bool) -> Self {
-        if nonlinear && ours == pbrts {
-            return Self::default();
-        }
         Self { ours: ours.to_bits(), pbrts: pbrts.to_bits(), nonlinear }
     }
 
@@ -66,13 +63,34 @@ impl Coats {
         let all = albedo / (1.0 - returned).max(Rgb::splat(f32::EPSILON));
         (all / (1.0 + all * pbrts)).min(Rgb::ONE)
     }
+
+    /// Is the base the same, but for what spectra do?
+    pub fn are_the_same(self) -> bool {
+        self.nonlinear && self.ours == self.pbrts
+    }
+
+    /// The same of one color, whose smooth spectrum bounces under pbrt's coat: by a fixed point.
+    fn base_of_spectrum(self, albedo: Rgb) -> Rgb {
+        let (first, pbrts) = (self.base(albedo), f32::from_bits(self.pbrts));
+        let wanted = (first / (1.0 - first * pbrts)).as_dvec3();
+        let mut base = first.as_dvec3();
+        for _ in 0..8 {
+            let got = Smooth::reflectance(base).map(|rho| rho / (1.0 - rho * f64::from(pbrts)));
+            let step = (wanted / got.max(DVec3::splat(1e-6))).clamp(DVec3::splat(0.5), DVec3::splat(2.0));
+            base = (base * step).clamp(DVec3::ZERO, DVec3::ONE);
+        }
+        base.as_vec3()
+    }
 }
 
 impl Writer<'_> {
     /// A color, constant or textured.
     pub(super) fn color(&mut self, params: Params, name: &str, input: ColorInput, wanted: Use) -> Params {
         match input {
-            ColorInput::Constant(color) => params.rgb(name, wanted.apply(color)),
+            ColorInput::Constant(color) => match wanted {
+                Use::Base(coats) => params.rgb(name, coats.base_of_spectrum(color)),
+                _ => params.rgb(name, wanted.apply(color)),
+            },
             ColorInput::Texture(id) => {
                 let texture = self.texture(id, wanted);
                 params.texture(name, &texture)

@@ -2,6 +2,7 @@
 //!
 //! - `texels`: numbers that are worked out from those of a file.
 
+mod below_coat;
 mod texels;
 
 use std::io::Cursor;
@@ -14,6 +15,7 @@ use crate::files;
 use crate::jpeg;
 use crate::pfm;
 use crate::values::srgb_to_linear;
+pub use below_coat::BelowCoat;
 pub use texels::{Encoding, TexelMap};
 
 /// Images of more texels are refused before anything is allocated.
@@ -33,6 +35,8 @@ pub enum Decode {
     Linear,
     /// Numbers that are worked out from those of the file.
     Texels(TexelMap),
+    /// Colors, as [`Decode::Color`], below a coat.
+    BelowCoat(BelowCoat),
 }
 
 /// Reads a file; the error is half a sentence.
@@ -44,6 +48,7 @@ pub fn load(path: &Path, decode: Decode) -> Result<Image, String> {
 pub fn decode_bytes(path: &Path, bytes: &[u8], decode: Decode) -> Result<Image, String> {
     let linear = |pixels| match decode {
         Decode::Texels(map) => map.apply(pixels, false),
+        Decode::BelowCoat(coat) => coat.apply(pixels),
         _ => pixels,
     };
     let (width, height, pixels) = if bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
@@ -154,6 +159,7 @@ fn convert(image: DynamicImage, decode: Decode) -> Pixels {
             Decode::Linear => Pixels::F32 { channels, data: linear_bytes(&data, channels) },
             Decode::Color | Decode::Raw => Pixels::U8 { channels, data },
             Decode::Texels(map) => map.apply(Pixels::U8 { channels, data }, true),
+            Decode::BelowCoat(coat) => coat.apply(Pixels::U8 { channels, data }),
         };
     }
     let float = matches!(image, D::ImageRgb32F(_) | D::ImageRgba32F(_));
@@ -162,7 +168,7 @@ fn convert(image: DynamicImage, decode: Decode) -> Pixels {
         3 => image.into_rgb32f().into_raw(),
         _ => image.into_rgba32f().into_raw(),
     };
-    if !float && matches!(decode, Decode::Color | Decode::Linear) {
+    if !float && matches!(decode, Decode::Color | Decode::Linear | Decode::BelowCoat(_)) {
         for texel in data.chunks_exact_mut(channels.into()) {
             texel.iter_mut().take(3).for_each(|v| *v = srgb_to_linear(f64::from(*v)) as f32);
         }
@@ -170,6 +176,7 @@ fn convert(image: DynamicImage, decode: Decode) -> Pixels {
     let pixels = Pixels::F32 { channels, data };
     match decode {
         Decode::Texels(map) => map.apply(pixels, !float),
+        Decode::BelowCoat(coat) => coat.apply(pixels),
         _ => pixels,
     }
 }

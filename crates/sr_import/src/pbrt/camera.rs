@@ -139,7 +139,8 @@ impl Reader<'_> {
         let fov = params.float("fov").unwrap_or(90.0);
         let tan_half = (0.5 * f64::from(fov).to_radians()).tan();
         let (half, center) = (screen.half(), screen.center());
-        if (half.x / half.y / aspect - 1.0).abs() > 1e-3 {
+        let is_square = (half.x / half.y / aspect - 1.0).abs() <= 1e-3;
+        if !is_square {
             let message = "pixels that are no squares are not supported";
             self.warn(
                 "pbrt::unsupported-camera",
@@ -153,9 +154,15 @@ impl Reader<'_> {
         let aperture_radius = params.float("lensradius").unwrap_or(0.0);
         let focus_distance = params.float("focaldistance").unwrap_or(1e6);
         let lens = Lens { aperture_radius, focus_distance, blades: 0, blade_rotation: 0.0 };
+        // As pbrt has it, where nothing says otherwise: so it is also for films of another shape.
+        let is_plain = is_square && half.min_element() == 1.0 && center == DVec2::ZERO;
+        let (fov_axis, fov) = match is_plain {
+            true => (FovAxis::Smaller, fov.to_radians()),
+            false => (FovAxis::X, (2.0 * (tan_half * half.x).atan()) as f32),
+        };
         Projection::Perspective {
-            fov_axis: FovAxis::X,
-            fov: (2.0 * (tan_half * half.x).atan()) as f32,
+            fov_axis,
+            fov,
             principal_point_offset: -Vec2::new(axis.x as f32, axis.y as f32),
             lens: (aperture_radius > 0.0).then_some(lens),
         }

@@ -8,8 +8,8 @@ use super::params::Params;
 use super::syntax::{Kind, Values};
 use crate::color_space::{ColorSpace, xyz_of};
 use crate::files;
-use crate::spectra::{self, Samples};
 use crate::values::{self, shown};
+use sr_spectra::{Samples, Smooth};
 
 /// All types that a color can be declared with.
 const KINDS: &[Kind] = &[Kind::Rgb, Kind::Spectrum, Kind::Blackbody, Kind::Float];
@@ -40,9 +40,23 @@ impl Curve {
             Self::Rgb(color) => space.surface_to_srgb(*color),
             Self::Srgb(color) => *color,
             Self::Constant(v) => DVec3::splat(*v),
-            Self::Samples(samples) => spectra::reflectance(|w| spectra::interpolate(samples, w)),
+            Self::Samples(samples) => sr_spectra::reflectance(|w| sr_spectra::interpolate(samples, w)),
             Self::Blackbody(_) | Self::Light(_) => self.light(space),
         }
+    }
+
+    /// Over wavelengths in nm, as an index; colors as smooth spectra. `None`: a light's.
+    pub fn spectrum(&self, space: ColorSpace) -> Option<impl Fn(f64) -> f64> {
+        let smooth = match self {
+            Self::Rgb(_) | Self::Srgb(_) => Smooth::unbounded(self.surface(space).max(DVec3::ZERO)),
+            Self::Constant(value) => Smooth::Grey(*value),
+            Self::Samples(_) => Smooth::Grey(0.0),
+            Self::Blackbody(_) | Self::Light(_) => return None,
+        };
+        Some(move |w| match self {
+            Self::Samples(samples) => sr_spectra::interpolate(samples, w),
+            _ => smooth.at(w),
+        })
     }
 
     /// As a light. Spectra have the luminance 1, as pbrt-v4 scales them, RGB colors have their own.
@@ -50,10 +64,10 @@ impl Curve {
         let color = match self {
             Self::Rgb(color) => Some(space.light_to_srgb(*color)),
             Self::Srgb(color) => Some(*color),
-            Self::Constant(_) => spectra::color_of_light(|_| 1.0),
-            Self::Samples(samples) => spectra::color_of_light(|w| spectra::interpolate(samples, w)),
-            Self::Blackbody(kelvin) => spectra::color_of_light(|w| spectra::blackbody(*kelvin, w)),
-            Self::Light(xy) => Some(spectra::rgb_from_xyz(xyz_of(DVec2::from(*xy)))),
+            Self::Constant(_) => sr_spectra::color_of_light(|_| 1.0),
+            Self::Samples(samples) => sr_spectra::color_of_light(|w| sr_spectra::interpolate(samples, w)),
+            Self::Blackbody(kelvin) => sr_spectra::color_of_light(|w| sr_spectra::blackbody(*kelvin, w)),
+            Self::Light(xy) => Some(sr_spectra::rgb_from_xyz(xyz_of(DVec2::from(*xy)))),
         };
         color.unwrap_or(DVec3::ZERO)
     }
@@ -121,7 +135,7 @@ impl Reader<'_> {
         let looks_like_a_file = name.contains(['.', '/', '\\']);
         if !looks_like_a_file && !path.exists() {
             let message = format!("no spectrum is known by the name of \"{}\"", shown(name));
-            let names = spectra::GLASSES.iter().map(|(known, _)| *known);
+            let names = sr_spectra::GLASSES.iter().map(|(known, _)| *known);
             let metals = ["metal-Ag-eta", "metal-Al-eta", "metal-Au-eta", "metal-Cu-eta", "stdillum-D65"];
             let note = Diagnostic::warning("pbrt::unknown-value", &span, message)
                 .guess(name, names.chain(metals))
@@ -144,10 +158,10 @@ impl Reader<'_> {
 
 /// The spectra that pbrt-v4 has names for.
 pub(super) fn known(name: &str) -> Option<Curve> {
-    if let Some(xy) = spectra::illuminant(name) {
+    if let Some(xy) = sr_spectra::illuminant(name) {
         return Some(Curve::Light(xy));
     }
-    if let Some(index) = spectra::glass(name) {
+    if let Some(index) = sr_spectra::glass(name) {
         return Some(Curve::Constant(index));
     }
     let (metal, part) = name.strip_prefix("metal-")?.rsplit_once('-')?;
@@ -155,7 +169,7 @@ pub(super) fn known(name: &str) -> Option<Curve> {
     if metal == "CuZn" {
         return Some(Curve::Srgb(DVec3::from(BRASS[part])));
     }
-    let (eta, k) = spectra::named_metal(metal)?;
+    let (eta, k) = sr_spectra::named_metal(metal)?;
     Some(Curve::Samples(if part == 0 { eta } else { k }))
 }
 

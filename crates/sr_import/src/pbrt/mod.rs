@@ -74,7 +74,7 @@ struct Reader<'d> {
     /// Shared by all that have none.
     default_material: Option<MaterialId>,
     float_textures: HashMap<String, FloatTexture>,
-    color_textures: HashMap<String, sr_scene::ColorInput>,
+    color_textures: HashMap<String, texture::ColorTexture>,
     /// Objects by name: their group.
     objects: HashMap<String, usize>,
     /// The object that is being described.

@@ -4,7 +4,7 @@
 //! of one kind chooses once, [`Materials::with_recipe`], and then makes their models in a loop.
 
 use sr_bsdf::{
-    AnyModel, Beckmann, Bsdf, Conductor, Dielectric, Diffuse, Ggx, Microfacet, MicrofacetKind,
+    AnyModel, Beckmann, Bsdf, Conductor, Dielectric, Diffuse, Ggx, GgxCorrelated, Microfacet, MicrofacetKind,
     MicrofacetShape, Plastic, Rgb, RoughConductor, RoughDielectric, RoughPlastic, RoughPlasticTables,
     SmoothCoat, ThinDielectric,
 };
@@ -70,13 +70,14 @@ impl Materials {
     /// Calls `user` with the recipe of a kind.
     #[inline(always)]
     pub(crate) fn with_recipe<'a, U: RecipeUser<'a>>(&'a self, kind: u32, user: U) -> U::Out {
-        use MicrofacetKind::{Beckmann as IsBeckmann, Ggx as IsGgx};
+        use MicrofacetKind::{Beckmann as IsBeckmann, Ggx as IsGgx, GgxCorrelated as IsCorrelated};
         match self.kinds[kind as usize] {
             Kind::Diffuse => user.call(MakeDiffuse),
             Kind::Dielectric => user.call(MakeDielectric),
             Kind::ThinDielectric => user.call(MakeThinDielectric),
             Kind::RoughDielectric { shape: IsBeckmann } => user.call(MakeRoughDielectric(Beckmann)),
             Kind::RoughDielectric { shape: IsGgx } => user.call(MakeRoughDielectric(Ggx)),
+            Kind::RoughDielectric { shape: IsCorrelated } => user.call(MakeRoughDielectric(GgxCorrelated)),
             Kind::Conductor { has_index: false } => user.call(MakeConductor::<false>),
             Kind::Conductor { has_index: true } => user.call(MakeConductor::<true>),
             Kind::RoughConductor { shape: IsBeckmann, has_index: false } => {
@@ -91,12 +92,19 @@ impl Materials {
             Kind::RoughConductor { shape: IsGgx, has_index: true } => {
                 user.call(MakeRoughConductor::<_, true>(Ggx))
             }
+            Kind::RoughConductor { shape: IsCorrelated, has_index: false } => {
+                user.call(MakeRoughConductor::<_, false>(GgxCorrelated))
+            }
+            Kind::RoughConductor { shape: IsCorrelated, has_index: true } => {
+                user.call(MakeRoughConductor::<_, true>(GgxCorrelated))
+            }
             Kind::Plastic { coat, nonlinear } => user.call(MakePlastic { coat, nonlinear }),
             Kind::RoughPlastic { coat, nonlinear } => {
                 let coat = &self.coats[coat as usize];
                 match coat.distribution().kind() {
                     IsBeckmann => user.call(MakeRoughPlastic { shape: Beckmann, coat, nonlinear }),
                     IsGgx => user.call(MakeRoughPlastic { shape: Ggx, coat, nonlinear }),
+                    IsCorrelated => user.call(MakeRoughPlastic { shape: GgxCorrelated, coat, nonlinear }),
                 }
             }
         }

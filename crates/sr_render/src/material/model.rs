@@ -102,9 +102,10 @@ impl Materials {
                 alpha,
                 eta_k,
                 specular_reflectance: reflectance,
+                bounces,
             } => {
                 let kind = microfacet_kind(kind);
-                let tables = orders.coated(kind, coat_alpha, eta, alpha);
+                let tables = orders.coated(kind, [coat_alpha, eta, alpha], bounces);
                 Uncommon::CoatedConductor { tables, eta_k, reflectance }.into()
             }
             MaterialDesc::Principled(principled) => Uncommon::Principled(principled).into(),
@@ -139,5 +140,6 @@ fn microfacet_kind(kind: sr_scene::MicrofacetKind) -> MicrofacetKind {
     match kind {
         sr_scene::MicrofacetKind::Beckmann => MicrofacetKind::Beckmann,
         sr_scene::MicrofacetKind::Ggx => MicrofacetKind::Ggx,
+        sr_scene::MicrofacetKind::GgxCorrelated => MicrofacetKind::GgxCorrelated,
     }
 }

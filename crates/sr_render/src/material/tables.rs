@@ -30,7 +30,7 @@ pub(super) struct Orders {
     coats: List<(MicrofacetKind, Bits<2>, bool)>,
     metals: List<(MicrofacetKind, Bits<1>)>,
     glasses: List<(MicrofacetKind, Bits<2>)>,
-    coated: List<(MicrofacetKind, Bits<3>)>,
+    coated: List<(MicrofacetKind, Bits<3>, Option<u32>)>,
 }
 
 impl Orders {
@@ -50,8 +50,10 @@ impl Orders {
     }
 
     /// Index into [`Tables::coated`].
-    pub fn coated(&mut self, kind: MicrofacetKind, coat_alpha: f32, eta: f32, alpha: f32) -> usize {
-        self.coated.number((kind, [coat_alpha, eta, alpha].map(f32::to_bits)))
+    ///
+    /// The numbers are the coat's roughness, its index, and the metal's roughness.
+    pub fn coated(&mut self, kind: MicrofacetKind, numbers: [f32; 3], bounces: Option<u32>) -> usize {
+        self.coated.number((kind, numbers.map(f32::to_bits), bounces))
     }
 
     /// How many tables are ordered.
@@ -72,9 +74,12 @@ impl Orders {
         let glasses = self.glasses.make(|(kind, [alpha, eta])| {
             DielectricTables::new(kind, f32::from_bits(alpha), f32::from_bits(eta))
         });
-        let coated = self.coated.make(|(kind, numbers)| {
+        let coated = self.coated.make(|(kind, numbers, bounces)| {
             let [coat_alpha, eta, alpha] = numbers.map(f32::from_bits);
-            CoatedConductorTables::new(kind, coat_alpha, eta, alpha)
+            match bounces {
+                None => CoatedConductorTables::lossless(kind, coat_alpha, eta, alpha),
+                Some(times) => CoatedConductorTables::walked(kind, coat_alpha, eta, alpha, times),
+            }
         });
         (coats, Tables { metals, glasses, coated })
     }

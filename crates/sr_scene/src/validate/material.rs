@@ -10,6 +10,8 @@ const INDICES: std::ops::RangeInclusive<f32> = 1e-3..=1e3;
 const LARGEST_COMPLEX_INDEX: f32 = 1e4;
 /// At 1, facets point everywhere; beyond this nothing changes any more.
 const ROUGHEST: f32 = 100.0;
+/// More bounces below a coat hold nothing.
+const MOST_BOUNCES: u32 = 16;
 /// A displacement this steep turns every normal into the surface.
 const STEEPEST: f32 = 1e6;
 
@@ -133,7 +135,15 @@ impl Check<'_> {
                 self.albedo(reflectance, "reflectance", span);
                 self.albedo(transmittance, "transmittance", span);
             }
-            MaterialDesc::CoatedConductor { coat_alpha, eta, alpha, eta_k, specular_reflectance, .. } => {
+            MaterialDesc::CoatedConductor {
+                coat_alpha,
+                eta,
+                alpha,
+                eta_k,
+                specular_reflectance,
+                bounces,
+                ..
+            } => {
                 if *coat_alpha != 0.0 {
                     self.alpha(&ScalarInput::Constant(*coat_alpha), span);
                 }
@@ -141,6 +151,13 @@ impl Check<'_> {
                 self.dense_index(*eta, "a relative index of refraction of a coat", span);
                 self.complex_index(eta_k, span);
                 self.albedo(specular_reflectance, "specular_reflectance", span);
+                if let Some(bounces) = bounces
+                    && !(1..=MOST_BOUNCES).contains(bounces)
+                {
+                    let message =
+                        format!("{bounces} bounces below a coat: from 1 to {MOST_BOUNCES} are possible");
+                    self.found.push(Diagnostic::error("scene::bounces", span, message));
+                }
             }
             MaterialDesc::Principled(principled) => self.principled(principled, span),
             MaterialDesc::PrincipledThin(thin) => self.principled_thin(thin, span),

@@ -6,7 +6,7 @@ use super::Lowering;
 use crate::files;
 use crate::mitsuba::node::{SpectrumValue, Value};
 use crate::mitsuba::props::{Props, finite_color};
-use crate::{spectra, values};
+use crate::values;
 
 /// What a color is for: it decides how a spectrum is seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -90,20 +90,20 @@ impl<'a> Lowering<'a, '_> {
     /// A spectrum as linear RGB; `None` after an error.
     pub(super) fn spectrum(&mut self, value: &SpectrumValue, role: Role, span: &Span) -> Option<glam::DVec3> {
         let convert = |f: &dyn Fn(f64) -> f64| match role {
-            Role::Factor => spectra::reflectance(f),
-            Role::Emission => spectra::emission(f),
+            Role::Factor => sr_spectra::reflectance(f),
+            Role::Emission => sr_spectra::emission(f),
         };
         let color = match value {
             // In Mitsuba 0.5 the same light at every wavelength is white; from 2.0 on it is equal energy.
             SpectrumValue::Uniform(v) if role == Role::Factor || self.origin.legacy => glam::DVec3::splat(*v),
             SpectrumValue::Uniform(v) => convert(&|_| *v),
-            SpectrumValue::Samples(samples) => convert(&|w| spectra::interpolate(samples, w)),
+            SpectrumValue::Samples(samples) => convert(&|w| sr_spectra::interpolate(samples, w)),
             SpectrumValue::File(name) => {
                 let path = self.out.find(name);
                 let read = files::read(&path, files::MAX_SCENE_BYTES)
                     .and_then(|bytes| values::spectrum_file(&String::from_utf8_lossy(&bytes)));
                 match read {
-                    Ok(samples) => convert(&|w| spectra::interpolate(&samples, w)),
+                    Ok(samples) => convert(&|w| sr_spectra::interpolate(&samples, w)),
                     Err(reason) => {
                         self.out.d.push(files::error(
                             "mitsuba::bad-spectrum",
@@ -123,7 +123,7 @@ impl<'a> Lowering<'a, '_> {
                     self.out.d.push(Diagnostic::error("mitsuba::bad-value", span, message));
                     return None;
                 }
-                convert(&|w| scale * spectra::blackbody(*temperature, w))
+                convert(&|w| scale * sr_spectra::blackbody(*temperature, w))
             }
         };
         if matches!(role, Role::Emission) && color.min_element() < 0.0 && color.max_element() > 0.0 {

@@ -230,8 +230,10 @@ impl<'a> Lowering<'a, '_> {
         match props.string("distribution", self.out.d) {
             None | Some(("beckmann", _)) => MicrofacetKind::Beckmann,
             Some(("ggx", _)) => MicrofacetKind::Ggx,
+            Some(("ggx_correlated", _)) => MicrofacetKind::GgxCorrelated,
             Some((other, span)) => {
-                self.unknown_word("microfacet distribution", other, &["beckmann", "ggx"], "beckmann", span);
+                let known = ["beckmann", "ggx", "ggx_correlated"];
+                self.unknown_word("microfacet distribution", other, &known, "beckmann", span);
                 MicrofacetKind::Beckmann
             }
         }

@@ -111,6 +111,7 @@ impl<'a> Lowering<'a, '_> {
     }
 
     pub(super) fn coated_conductor(&mut self, props: &mut Props<'a>) -> MaterialDesc {
+        let bounces = props.integer("bounces", self.out.d).map(|n| n.clamp(0, u32::MAX.into()) as u32);
         MaterialDesc::CoatedConductor {
             kind: self.distribution(props),
             coat_alpha: self.constant_alpha(props, "coat_alpha", 0.0),
@@ -118,6 +119,7 @@ impl<'a> Lowering<'a, '_> {
             alpha: self.constant_alpha(props, "alpha", 0.1),
             eta_k: self.eta_k(props),
             specular_reflectance: self.factor(props, "specular_reflectance", Rgb::ONE),
+            bounces,
         }
     }
 

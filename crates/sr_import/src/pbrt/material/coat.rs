@@ -1,12 +1,15 @@
 //! What pbrt's coats take away: they absorb, and light bounces below them a few times only.
 //!
 //! A coat of pbrt has `thickness` (0.01 by default) times the extinction 1, also where nothing scatters in it, and
-//! `maxdepth` passages through it. Ours are clear, and light bounces until it leaves: the base gets the albedo with which
-//! both reflect the same on average.
+//! `maxdepth` passages through it; and what bounces below it has a spectrum. Ours are clear, light bounces until it
+//! leaves, and has a color: the base gets the albedo with which both reflect the same on average.
 
+use sr_bsdf::interface::diffuse_reflectance;
+use sr_bsdf::{MicrofacetKind, RoughPlasticTables, rough_internal_reflectance};
 use sr_scene::{ColorInput, Rgb, TextureDesc};
 
 use super::{FloatTexture, GREY, Params, Reader};
+use crate::images::BelowCoat;
 
 /// A layer of pbrt's.
 #[derive(Clone, Copy, Debug)]
@@ -27,38 +30,32 @@ impl Layer {
         (-2.0 * self.depth * path).exp()
     }
 
-    /// Of diffuse light from the base, how much returns to it.
-    fn returned(&self, depth: f32) -> f32 {
-        /// Cosines at which it is summed up.
-        const STEPS: usize = 512;
-        let cosines = (0..STEPS).map(|i| (i as f32 + 0.5) / STEPS as f32);
-        let sum: f32 =
-            cosines.map(|cos| 2.0 * cos * reflectance(cos, self.eta) * (-2.0 * depth / cos).exp()).sum();
-        sum / STEPS as f32
+    /// How often light meets the base, in the range of materials.
+    pub fn meetings(&self) -> u32 {
+        self.meetings.clamp(1, sr_bsdf::MAX_BOUNCES_BELOW_COAT as i32) as u32
     }
 
-    /// The albedo below a clear coat that comes to the same as `albedo` below this one.
-    fn clear_albedo(&self, albedo: Rgb) -> Rgb {
-        let (through, returned, clear) =
-            (self.transmittance(), self.returned(self.depth), self.returned(0.0));
-        albedo.map(|a| {
-            let left = a * returned;
-            let sum = through * a * (1.0 - left.powi(self.meetings)) / (1.0 - left);
-            sum / (1.0 + sum * clear)
-        })
+    /// The base below this coat, if its surface has the roughness `alpha`; `None` is smooth.
+    fn base(&self, alpha: Option<f32>) -> BelowCoat {
+        /// As good as smooth.
+        const NEARLY_SMOOTH: f32 = 1e-4;
+        const GGX: MicrofacetKind = MicrofacetKind::GgxCorrelated;
+        let returned =
+            |depth| rough_internal_reflectance(GGX, alpha.unwrap_or(NEARLY_SMOOTH), self.eta, depth);
+        let (returned, ours) = match alpha {
+            None => {
+                let clear = diffuse_reflectance(1.0 / self.eta);
+                let kept =
+                    if self.depth > 0.0 { returned(self.depth) / returned(0.0).max(1e-6) } else { 1.0 };
+                (clear * kept, clear)
+            }
+            Some(alpha) => {
+                let ours = RoughPlasticTables::new(GGX, alpha, self.eta).internal_reflectance();
+                (returned(self.depth), ours)
+            }
+        };
+        BelowCoat { through: self.transmittance(), returned, returned_clear: ours, meetings: self.meetings }
     }
-}
-
-/// What an interface reflects of unpolarised light from the side of index `eta`, at least 1.
-fn reflectance(cos: f32, eta: f32) -> f32 {
-    let sin2_outside = eta * eta * (1.0 - cos * cos);
-    if sin2_outside >= 1.0 {
-        return 1.0;
-    }
-    let cos_outside = (1.0 - sin2_outside).sqrt();
-    let across = (eta * cos - cos_outside) / (eta * cos + cos_outside);
-    let along = (cos - eta * cos_outside) / (cos + eta * cos_outside);
-    0.5 * (across * across + along * along)
 }
 
 impl Reader<'_> {
@@ -80,13 +77,23 @@ impl Reader<'_> {
         Layer { eta: eta.max(1.0), depth, meetings: (meetings + 1) / 2 }
     }
 
-    /// What the base reflects below a clear coat.
-    pub(super) fn base_albedo(&mut self, params: &mut Params, layer: Layer) -> ColorInput {
+    /// What the base reflects below a clear coat of roughness `alpha`; `None` is smooth.
+    pub(super) fn base_albedo(
+        &mut self,
+        params: &mut Params,
+        layer: Layer,
+        alpha: Option<f32>,
+    ) -> ColorInput {
+        let base = layer.base(alpha);
+        let clear = |albedo: Rgb| base.clear_albedo(albedo.as_dvec3()).as_vec3();
+        if let Some(image) = self.image_below_coat(params, "reflectance", base) {
+            return image;
+        }
         match self.albedo(params, "reflectance", GREY) {
-            ColorInput::Constant(color) => ColorInput::Constant(layer.clear_albedo(color)),
+            ColorInput::Constant(color) => ColorInput::Constant(clear(color)),
             // As for a middle grey.
             input => {
-                let factor = ColorInput::Constant(layer.clear_albedo(GREY) / GREY);
+                let factor = ColorInput::Constant(clear(GREY) / GREY);
                 self.out.add_texture(TextureDesc::Scale { input, factor, span: params.span.clone() })
             }
         }
@@ -97,22 +104,51 @@ impl Reader<'_> {
 mod tests {
     use super::*;
 
-    /// Egan & Hilgeman 1973: 0.596 for an index of 1.5.
-    #[test]
-    fn interfaces_reflect_more_from_inside() {
-        let layer = |eta| Layer { eta, depth: 0.0, meetings: 5 };
-        assert!((layer(1.5).returned(0.0) - 0.596).abs() < 2e-3, "{}", layer(1.5).returned(0.0));
-        assert!(layer(1.0).returned(0.0) < 1e-3);
-    }
-
     #[test]
     fn clear_layers_of_many_bounces_change_nothing_and_others_darken() {
-        let layer = |depth, meetings| Layer { eta: 1.5, depth, meetings };
-        let albedo = Rgb::new(0.0, 0.5, 0.9);
-        assert!((layer(0.0, 500).clear_albedo(albedo) - albedo).abs().max_element() < 1e-5);
-        for other in [layer(0.01, 500), layer(0.0, 5)] {
-            let darker = other.clear_albedo(albedo);
-            assert!(darker.x == 0.0 && darker.y < 0.5 && darker.z < 0.9 && darker.z > 0.8, "{darker}");
+        let base = |depth, meetings| Layer { eta: 1.5, depth, meetings }.base(None);
+        let albedo = glam::DVec3::new(0.0, 0.5, 0.9);
+        let grey = glam::DVec3::splat(0.7);
+        assert!((base(0.0, 500).clear_albedo(grey) - grey).abs().max_element() < 1e-5);
+        for other in [base(0.01, 500), base(0.0, 5)] {
+            let darker = other.clear_albedo(grey);
+            assert!(darker.max_element() < 0.7 && darker.min_element() > 0.65, "{darker}");
+            assert!((other.clear_albedo(albedo) - albedo).abs().max_element() < 0.05);
+        }
+    }
+
+    /// By a walk of two million paths through pbrt's layers (thickness 0.01, ten passages), of light that comes along the normal:
+    /// what such a base adds to the coat's reflection.
+    #[test]
+    fn bases_reflect_as_much_as_walks_below_coats() {
+        for (alpha, albedo, reflected) in [
+            (None, 0.9, 0.6735),
+            (None, 0.2, 0.0856),
+            (Some(0.1), 1.0, 0.7813),
+            (Some(0.1), 0.5, 0.2595),
+            (Some(0.4), 1.0, 0.5565),
+            (Some(0.4), 0.2, 0.0791),
+        ] {
+            let base = Layer { eta: 1.5, depth: 0.01, meetings: 5 }.base(alpha);
+            let clear = base.clear_albedo(glam::DVec3::splat(albedo)).x;
+            let passes = f64::from(match alpha {
+                None => 0.96,
+                Some(alpha) => {
+                    RoughPlasticTables::new(MicrofacetKind::GgxCorrelated, alpha, 1.5).transmittance(1.0)
+                }
+            });
+            // What enters along the normal leaves in all directions.
+            let mean = 1.0 - f64::from(diffuse_reflectance(1.5));
+            let leaves = match alpha {
+                None => mean / 2.25,
+                Some(alpha) => {
+                    let tables = RoughPlasticTables::new(MicrofacetKind::GgxCorrelated, alpha, 1.5);
+                    let cosines = (0..256).map(|i| ((i as f32 + 0.5) / 256.0).sqrt());
+                    cosines.map(|cos| f64::from(tables.transmittance(cos))).sum::<f64>() / 256.0 / 2.25
+                }
+            };
+            let got = passes * leaves * clear / (1.0 - clear * f64::from(base.returned_clear));
+            assert!((got / reflected - 1.0).abs() < 0.01, "{alpha:?} {albedo}: {got}, not {reflected}");
         }
     }
 }

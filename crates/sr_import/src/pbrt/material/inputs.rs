@@ -4,10 +4,8 @@ use glam::DVec3;
 use sr_scene::{ColorInput, Rgb, ScalarInput};
 
 use super::{Curve, FloatTexture, GREY, Params, Reader, is_smooth};
-use crate::color_space::ColorSpace;
 use crate::pbrt::color::known;
 use crate::pbrt::syntax::Kind;
-use crate::spectra;
 
 impl Reader<'_> {
     /// A color of at most 1.
@@ -137,22 +135,16 @@ impl Reader<'_> {
             None => Ok(self.curve(params, name).map(|(_, curve)| curve).or_else(|| known(default))),
         };
         let (eta, k) = (input(eta, "metal-Cu-eta"), input(k, "metal-Cu-k"));
-        if let (Ok(Some(Curve::Samples(eta))), Ok(Some(Curve::Samples(k)))) = (&eta, &k) {
-            let (eta, k) = spectra::metal(
-                |w| spectra::interpolate(eta, w),
-                |w| spectra::interpolate(k, w),
-                above.into(),
-            );
+        let space = self.state.color_space;
+        if let (Ok(Some(eta)), Ok(Some(k))) = (&eta, &k)
+            && let (Some(eta), Some(k)) = (eta.spectrum(space), k.spectrum(space))
+        {
+            let (eta, k) = sr_spectra::metal(eta, k, above.into());
             let constant = |color: DVec3| ColorInput::Constant(color.as_vec3());
             return (Some((constant(eta), constant(k))), one);
         }
-        // RGB indices are what they are, in whatever color space.
         let constant = |curve: Option<Curve>| match curve {
-            Some(Curve::Rgb(color)) => ColorInput::Constant(color.max(DVec3::ZERO).as_vec3()),
-            Some(curve) => {
-                let color = curve.surface(ColorSpace::Srgb);
-                ColorInput::Constant(color.max(DVec3::ZERO).as_vec3())
-            }
+            Some(curve) => ColorInput::Constant(curve.surface(space).max(DVec3::ZERO).as_vec3()),
             None => one,
         };
         let input =

@@ -160,12 +160,13 @@ impl Reader<'_> {
         let alpha = self.alpha(params, ["uroughness", "vroughness", "roughness"], 0.0);
         let eta = self.eta(params, "eta", 1.5);
         let layer = self.layer(params, eta);
-        let diffuse_reflectance = self.base_albedo(params, layer);
+        let alpha = self.constant_alpha(alpha, params);
+        let diffuse_reflectance = self.base_albedo(params, layer, alpha);
         let specular_reflectance = ColorInput::Constant(Rgb::ONE);
-        match self.constant_alpha(alpha, params) {
+        match alpha {
             None => MaterialDesc::Plastic { eta, diffuse_reflectance, specular_reflectance, nonlinear: true },
             Some(alpha) => MaterialDesc::RoughPlastic {
-                kind: MicrofacetKind::Ggx,
+                kind: MicrofacetKind::GgxCorrelated,
                 alpha,
                 eta,
                 diffuse_reflectance,
@@ -193,12 +194,13 @@ impl Reader<'_> {
         let (eta_k, specular_reflectance) =
             self.complex_index(params, ["conductor.eta", "conductor.k"], eta.max(1.0));
         MaterialDesc::CoatedConductor {
-            kind: MicrofacetKind::Ggx,
+            kind: MicrofacetKind::GgxCorrelated,
             coat_alpha: self.constant_alpha(coat, params).unwrap_or(0.0),
             eta: eta.max(1.0),
             alpha: self.constant_alpha(metal, params).unwrap_or(SMOOTH),
             eta_k,
             specular_reflectance: self.scaled(specular_reflectance, layer.transmittance(), &params.span),
+            bounces: Some(layer.meetings()),
         }
     }
 
@@ -208,7 +210,7 @@ impl Reader<'_> {
         match is_smooth(&alpha) {
             true => MaterialDesc::Conductor { eta_k, specular_reflectance },
             false => MaterialDesc::RoughConductor {
-                kind: MicrofacetKind::Ggx,
+                kind: MicrofacetKind::GgxCorrelated,
                 alpha,
                 eta_k,
                 specular_reflectance,
@@ -225,7 +227,7 @@ impl Reader<'_> {
         match is_smooth(&alpha) {
             true => MaterialDesc::Dielectric { eta, specular_reflectance, specular_transmittance },
             false => MaterialDesc::RoughDielectric {
-                kind: MicrofacetKind::Ggx,
+                kind: MicrofacetKind::GgxCorrelated,
                 alpha,
                 eta,
                 specular_reflectance,

@@ -3,7 +3,7 @@
 use glam::{Affine2, Vec2};
 use sr_scene::{ColorInput, Filter, Rgb, Span, TextureDesc, Wrap};
 
-use crate::images::{Decode, Encoding, TexelMap};
+use crate::images::{BelowCoat, Decode, Encoding, TexelMap};
 use crate::pbrt::Reader;
 use crate::pbrt::params::Params;
 
@@ -21,6 +21,25 @@ impl FloatImage {
     pub fn scaled(mut self, factor: f32) -> Self {
         self.map = self.map.scaled(factor);
         self
+    }
+}
+
+/// An image of colors, not yet asked for.
+#[derive(Clone, Debug)]
+pub struct ColorImage {
+    file: String,
+    decode: Decode,
+    srgb: bool,
+    place: Place,
+    scale: f32,
+    span: Span,
+}
+
+impl ColorImage {
+    /// The same below a coat; `None`: its values are not plain colors.
+    pub fn below(&self, coat: BelowCoat) -> Option<Self> {
+        let is_plain = self.decode == Decode::Color && self.scale == 1.0;
+        is_plain.then(|| Self { decode: Decode::BelowCoat(coat), ..self.clone() })
     }
 }
 
@@ -50,8 +69,8 @@ impl Reader<'_> {
         self.out.add_texture(TextureDesc::Bitmap { image: index, filter, wrap, srgb: false, to_uv, span })
     }
 
-    pub(super) fn color_image(&mut self, params: &mut Params) -> Option<ColorInput> {
-        let Place { filter, wrap, to_uv } = self.place(params);
+    pub(super) fn color_image(&mut self, params: &mut Params) -> Option<ColorImage> {
+        let place = self.place(params);
         let (scale, invert) = scale_and_invert(params);
         let (span, file) = self.image_name(params)?;
         let encoding = self.encoding(params, &file);
@@ -63,20 +82,21 @@ impl Reader<'_> {
             Encoding::Linear => (Decode::Raw, false),
             Encoding::Gamma(_) => (Decode::Texels(TexelMap::new(encoding, false)), false),
         };
-        let image = self.out.image_file(&file, decode, &span);
-        let input = self.out.add_texture(TextureDesc::Bitmap {
-            image,
-            filter,
-            wrap,
-            srgb,
-            to_uv,
-            span: span.clone(),
-        });
-        if scale == 1.0 || invert {
-            return Some(input);
+        let scale = if invert { 1.0 } else { scale };
+        Some(ColorImage { file, decode, srgb, place, scale, span })
+    }
+
+    pub(super) fn add_color_image(&mut self, image: &ColorImage) -> ColorInput {
+        let index = self.out.image_file(&image.file, image.decode, &image.span);
+        let Place { filter, wrap, to_uv } = image.place;
+        let (srgb, span) = (image.srgb, image.span.clone());
+        let input =
+            self.out.add_texture(TextureDesc::Bitmap { image: index, filter, wrap, srgb, to_uv, span });
+        if image.scale == 1.0 {
+            return input;
         }
-        let factor = ColorInput::Constant(Rgb::splat(scale));
-        Some(self.out.add_texture(TextureDesc::Scale { input, factor, span }))
+        let (factor, span) = (ColorInput::Constant(Rgb::splat(image.scale)), image.span.clone());
+        self.out.add_texture(TextureDesc::Scale { input, factor, span })
     }
 
     pub(in crate::pbrt) fn image_name(&mut self, params: &mut Params) -> Option<(Span, String)> {
@@ -92,8 +112,9 @@ impl Reader<'_> {
         let known = ["bilinear", "point", "trilinear", "ewa", "EWA"];
         let filter = match params.choice("filter", &known, &mut self.notes()) {
             "point" => Filter::Nearest,
-            "bilinear" => Filter::Bilinear,
-            _ => Filter::Mipmap,
+            // Mipmaps stand for the mean over what a sample sees, which is a quarter of a pixel and less in pbrt: the mean of a
+            // pixel's samples, without the blur.
+            _ => Filter::Bilinear,
         };
         let wrap =
             match params.choice("wrap", &["repeat", "clamp", "black", "octahedralsphere"], &mut self.notes())

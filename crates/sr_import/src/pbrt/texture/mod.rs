@@ -11,8 +11,9 @@ use super::Reader;
 use super::params::{Notes, Params};
 use super::support::{TEXTURES, unsupported};
 use super::syntax::{Kind, Result, Scanner, Values};
+use crate::images::BelowCoat;
 use crate::values::shown;
-pub use image::FloatImage;
+pub use image::{ColorImage, FloatImage};
 
 /// What is shown instead of textures that are not supported.
 const STAND_IN: f32 = 0.5;
@@ -24,6 +25,14 @@ pub enum FloatTexture {
     /// An image, not yet asked for: some want the roots of its numbers.
     Image(FloatImage),
     Other(ColorInput),
+}
+
+/// A texture of colors.
+#[derive(Clone, Debug)]
+pub enum ColorTexture {
+    Input(ColorInput),
+    /// An image: some want it as it is seen below a coat. The input is there once it was asked for.
+    Image(ColorImage, Option<ColorInput>),
 }
 
 impl Reader<'_> {
@@ -43,7 +52,13 @@ impl Reader<'_> {
                 self.float_textures.insert(name.clone(), texture).is_none()
             }
             "spectrum" | "color" => {
-                let texture = self.color_texture(&class, &mut params);
+                let texture = match &*class {
+                    "imagemap" => match self.color_image(&mut params) {
+                        Some(image) => ColorTexture::Image(image, None),
+                        None => ColorTexture::Input(ColorInput::Constant(Rgb::splat(STAND_IN))),
+                    },
+                    _ => ColorTexture::Input(self.color_texture(&class, &mut params)),
+                };
                 self.color_textures.insert(name.clone(), texture).is_none()
             }
             other => {
@@ -103,7 +118,6 @@ impl Reader<'_> {
                     }
                 }
             }
-            "imagemap" => self.color_image(params).unwrap_or(ColorInput::Constant(Rgb::splat(STAND_IN))),
             _ => self.composed(class, params, false),
         }
     }
@@ -238,16 +252,38 @@ impl Reader<'_> {
     /// A color, or the name of a texture.
     pub(super) fn color_or_texture(&mut self, params: &mut Params, name: &'static str) -> Option<ColorInput> {
         if let Some((span, texture)) = texture_name(params, name) {
-            let found = self.color_textures.get(&texture).copied();
+            let found = self.color_textures.get(&texture).cloned();
             if found.is_none() {
                 let message = format!("there is no texture \"{}\" of type \"spectrum\"", shown(&texture));
                 let mut notes = Notes { list: self.out.d, said: &mut self.said };
                 let known = self.color_textures.keys();
                 Self::unresolved(&mut notes, &span, message, &texture, known, "the default is used");
             }
-            return found;
+            return Some(match found? {
+                ColorTexture::Input(input) => input,
+                ColorTexture::Image(_, Some(input)) => input,
+                ColorTexture::Image(image, None) => {
+                    let input = self.add_color_image(&image);
+                    self.color_textures.insert(texture, ColorTexture::Image(image, Some(input)));
+                    input
+                }
+            });
         }
         self.surface_color(params, name).map(ColorInput::Constant)
+    }
+
+    /// The image that `name` names as it is seen below a coat; `None`: it names none, or one whose values are not plain colors.
+    pub(super) fn image_below_coat(
+        &mut self,
+        params: &mut Params,
+        name: &'static str,
+        coat: BelowCoat,
+    ) -> Option<ColorInput> {
+        params.find(name, &[Kind::Texture])?;
+        let (_, texture) = texture_name(params, name)?;
+        let Some(ColorTexture::Image(image, _)) = self.color_textures.get(&texture) else { return None };
+        let below = image.below(coat)?;
+        Some(self.add_color_image(&below))
     }
 
     /// Numbers as greys.

@@ -1,15 +1,17 @@
 //! Spectra to linear sRGB, by the integrals of the CIE 1931 standard observer.
 //!
-//! - `cie`: the observer and daylight. `metals`, `named`: spectra that have names.
+//! - `cie`: the observer and daylight. `metals`, `named`: spectra that have names. `upsampled`: from a color to a spectrum.
 
 mod cie;
 mod metals;
 mod named;
+mod upsampled;
 
 use glam::{DMat3, DVec3};
 
 pub use metals::named as named_metal;
 pub use named::{GLASSES, glass, illuminant};
+pub use upsampled::Smooth;
 
 /// (wavelength in nm, value), wavelengths increasing.
 pub type Samples = Vec<(f64, f64)>;
@@ -53,6 +55,26 @@ pub fn metal(eta: impl Fn(f64) -> f64, k: impl Fn(f64) -> f64, above: f64) -> (D
     let k2 = (reflected * (n + 1.0) * (n + 1.0) - (n - 1.0) * (n - 1.0)) / (1.0 - reflected);
     let k = DVec3::new(k2.x.max(0.0).sqrt(), k2.y.max(0.0).sqrt(), k2.z.max(0.0).sqrt());
     (n * above, k * above)
+}
+
+/// Spectra of η and k every 10 nm for a metal of these colors: the inverse of [`metal`].
+///
+/// η has its own smooth spectrum, and so has what is reflected at a right angle from a medium of the index `above`; k goes
+/// with both.
+pub fn metal_spectra(eta: DVec3, k: DVec3, above: f64) -> (Samples, Samples) {
+    let (n, relative_k) = (eta / above, k / above);
+    let reflected =
+        ((n - 1.0) * (n - 1.0) + relative_k * relative_k) / ((n + 1.0) * (n + 1.0) + relative_k * relative_k);
+    let (n, reflected) = (Smooth::unbounded(n), Smooth::reflectance(reflected.min(DVec3::splat(0.9999))));
+    let at = |w: f64| {
+        let r = reflected.at(w).clamp(0.0, 0.9999);
+        let most = (1.0 + r.sqrt()) / (1.0 - r.sqrt());
+        let n = n.at(w).clamp(1.0 / most, most);
+        let k2 = (r * (n + 1.0).powi(2) - (n - 1.0).powi(2)) / (1.0 - r);
+        (w, n * above, k2.max(0.0).sqrt() * above)
+    };
+    let samples = (RANGE.0..=RANGE.1).step_by(10).map(|nm| at(f64::from(nm)));
+    samples.map(|(w, n, k)| ((w, n), (w, k))).unzip()
 }
 
 /// The value between samples (wavelength in nm, value), linearly; 0 outside.
@@ -108,6 +130,21 @@ mod tests {
     #[test]
     fn a_constant_reflectance_is_grey() {
         close(reflectance(|_| 0.25), [0.25; 3], 1e-12);
+    }
+
+    #[test]
+    fn metals_come_back_from_their_spectra() {
+        for (eta, k, above) in [
+            ([0.143, 0.375, 1.442], [3.983, 2.386, 1.603], 1.0),
+            ([1.657, 0.880, 0.521], [9.224, 6.270, 4.837], 1.5),
+            ([0.2, 0.9, 1.1], [3.9, 2.4, 2.2], 1.0),
+        ] {
+            let (eta, k) = (DVec3::from(eta), DVec3::from(k));
+            let (of_eta, of_k) = metal_spectra(eta, k, above);
+            let (got_eta, got_k) = metal(|w| interpolate(&of_eta, w), |w| interpolate(&of_k, w), above);
+            assert!((got_eta / eta - 1.0).abs().max_element() < 0.01, "{got_eta}, not {eta}");
+            assert!((got_k / k - 1.0).abs().max_element() < 0.01, "{got_k}, not {k}");
+        }
     }
 
     /// The figures are what Mitsuba 3.9.1 makes of the same spectra in `scalar_rgb`.
