@@ -6,10 +6,12 @@ use glam::{DVec3, Vec2, Vec3};
 use rayon::prelude::*;
 
 use crate::bvh::{Bvh, MAX_INDEX, Met, PrimRef, Round, Tree};
+use crate::curve::{CurveSet, Piece};
 use crate::instance::PlacedGroup;
+use crate::surface::Located;
 use crate::{
     BilinearPatch, Bounds3, Cylinder, Disk, GeometryError, GeometryInput, Hit, NO_INSTANCE, Ray, Shape,
-    ShapeId, Sphere, TriangleMesh,
+    ShapeId, Sphere, Tangents, TriangleMesh,
 };
 
 /// Shapes, groups and instances behind one bounding volume hierarchy; read-only.
@@ -25,6 +27,7 @@ pub struct Geometry {
     disks: Vec<Disk>,
     cylinders: Vec<Cylinder>,
     patches: Vec<BilinearPatch>,
+    curves: CurveSet,
     instances: Vec<PlacedGroup>,
     others: Vec<Other>,
     pub(crate) bvh: Bvh,
@@ -40,6 +43,7 @@ enum ShapeRecord {
     Disk(u32),
     Cylinder(u32),
     Patch(u32),
+    Curves(u32),
 }
 
 /// Where a mesh is in the arrays. Its vertex indices count from `first_vertex`.
@@ -61,6 +65,7 @@ enum Other {
     Disk { shape: ShapeId, index: u32 },
     Cylinder { shape: ShapeId, index: u32 },
     Patch { shape: ShapeId, index: u32 },
+    Curve { shape: ShapeId, piece: Piece },
     Instance(u32),
 }
 
@@ -77,6 +82,8 @@ pub enum ShapeRef<'a> {
     Cylinder(&'a Cylinder),
     /// A bilinear patch.
     Patch(&'a BilinearPatch),
+    /// Curves, of [`Geometry::primitive_count`] segments.
+    Curves,
 }
 
 impl Geometry {
@@ -101,6 +108,7 @@ impl Geometry {
             disks: Vec::new(),
             cylinders: Vec::new(),
             patches: Vec::new(),
+            curves: CurveSet::default(),
             instances,
             others: Vec::new(),
             bvh: Bvh::new(),
@@ -131,6 +139,7 @@ impl Geometry {
                 self.patches.push(*patch);
                 ShapeRecord::Patch(self.patches.len() as u32 - 1)
             }
+            Shape::Curves(curves) => ShapeRecord::Curves(self.curves.store(curves)),
         };
         self.shapes.push(record);
     }
@@ -187,7 +196,7 @@ impl Geometry {
         match self.others[other as usize] {
             Other::Sphere { shape, index } => Some(Round::Sphere(shape, &self.spheres[index as usize])),
             Other::Disk { shape, index } => Some(Round::Disk(shape, &self.disks[index as usize])),
-            Other::Cylinder { .. } | Other::Patch { .. } | Other::Instance(_) => None,
+            Other::Cylinder { .. } | Other::Patch { .. } | Other::Curve { .. } | Other::Instance(_) => None,
         }
     }
 
@@ -216,6 +225,13 @@ impl Geometry {
                 }
                 ShapeRecord::Patch(index) => {
                     (self.patches[index as usize].bounds(), Other::Patch { shape, index })
+                }
+                ShapeRecord::Curves(index) => {
+                    for (bounds, piece) in self.curves.pieces(index) {
+                        prims.push(PrimRef::new(bounds, PrimRef::OTHER, self.others.len() as u32));
+                        self.others.push(Other::Curve { shape, piece });
+                    }
+                    continue;
                 }
             };
             prims.push(PrimRef::new(bounds, PrimRef::OTHER, self.others.len() as u32));
@@ -258,6 +274,11 @@ impl Geometry {
                 let met = self.patches[index as usize].intersect(ray);
                 Met::Hit(met.map(|(t, at)| hit(shape, t, at)))
             }
+            Other::Curve { shape, piece } => {
+                let met = self.curves.intersect(self.curves_of(shape), piece, ray);
+                let primitive = piece.segment();
+                Met::Hit(met.map(|(t, u)| Hit { primitive, ..hit(shape, t, Vec2::new(u, 0.0)) }))
+            }
             Other::Instance(instance) => {
                 let placed = &self.instances[instance as usize];
                 let tree = self.groups[placed.group as usize];
@@ -285,13 +306,33 @@ impl Geometry {
             ShapeRecord::Disk(index) => ShapeRef::Disk(&self.disks[index as usize]),
             ShapeRecord::Cylinder(index) => ShapeRef::Cylinder(&self.cylinders[index as usize]),
             ShapeRecord::Patch(index) => ShapeRef::Patch(&self.patches[index as usize]),
+            ShapeRecord::Curves(_) => ShapeRef::Curves,
         }
     }
 
-    /// Triangles of a mesh; 1 for other shapes.
+    /// Where curves are in the set of all.
+    fn curves_of(&self, shape: ShapeId) -> u32 {
+        match self.shapes[shape.0 as usize] {
+            ShapeRecord::Curves(index) => index,
+            other => panic!("shape {} is no curves but {other:?}", shape.0),
+        }
+    }
+
+    /// The surface at a hit of curves, seen in the space of their list from close by.
+    pub(crate) fn located_on_curve(&self, hit: &Hit, near: Vec3) -> Located {
+        self.curves.located(self.curves_of(hit.shape), hit.primitive, hit.b1, near)
+    }
+
+    /// [`Geometry::tangents`] of curves, in the space of their list.
+    pub(crate) fn tangents_of_curve(&self, hit: &Hit, near: Vec3) -> Tangents {
+        self.curves.tangents(self.curves_of(hit.shape), hit.primitive, hit.b1, near)
+    }
+
+    /// Triangles of a mesh, segments of curves; 1 for other shapes.
     pub fn primitive_count(&self, shape: ShapeId) -> u32 {
         match self.shapes[shape.0 as usize] {
             ShapeRecord::Mesh(mesh) => mesh.triangles,
+            ShapeRecord::Curves(index) => self.curves.segment_count(index),
             _ => 1,
         }
     }
@@ -352,6 +393,7 @@ impl Geometry {
             + size_of_val(&self.disks[..])
             + size_of_val(&self.cylinders[..])
             + size_of_val(&self.patches[..])
+            + self.curves.memory_bytes()
             + size_of_val(&self.instances[..])
             + size_of_val(&self.others[..])
             + self.bvh.memory_bytes()
@@ -392,16 +434,22 @@ fn check_counts<'a>(
     shapes: impl Iterator<Item = &'a Shape<'a>>,
     instances: usize,
 ) -> Result<(), GeometryError> {
-    let (mut count, mut triangles, mut vertices) = (0, 0, 0);
+    let (mut count, mut triangles, mut vertices, mut pieces) = (0, 0, 0, 0);
     for shape in shapes {
         count += 1;
         if let Shape::Mesh(mesh) = shape {
             triangles += mesh.triangles.len();
             vertices += mesh.positions.len();
         }
+        if let Shape::Curves(curves) = shape {
+            pieces += curves.most_pieces();
+        }
     }
-    let counts =
-        [("triangles", triangles), ("vertices", vertices), ("shapes and instances", count + instances)];
+    let counts = [
+        ("triangles", triangles),
+        ("vertices", vertices),
+        ("shapes, instances and pieces of curves", count + instances + pieces),
+    ];
     match counts.into_iter().find(|&(_, count)| count > MAX_INDEX) {
         Some((what, count)) => Err(GeometryError::TooMany { what, count, limit: MAX_INDEX }),
         None => Ok(()),

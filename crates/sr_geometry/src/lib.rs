@@ -1,7 +1,7 @@
 //! Shapes and the rays that meet them.
 //!
-//! In: [`GeometryInput`], borrowed triangle meshes, spheres, disks, cylinders and bilinear patches in world space and in groups that
-//! [`Instance`]s place. Out: [`Geometry`], flat arrays behind one 8-wide bounding volume hierarchy, which answers
+//! In: [`GeometryInput`], borrowed triangle meshes, spheres, disks, cylinders, bilinear patches and curves in world space and in
+//! groups that [`Instance`]s place. Out: [`Geometry`], flat arrays behind one 8-wide bounding volume hierarchy, which answers
 //! [`Geometry::intersect`] (closest [`Hit`]), [`Geometry::occluded`] (any hit) and [`Geometry::surface`]
 //! (position with its error bound, normals, texture coordinates), for one ray or for a batch of [`Rays`]. No material
 //! and no light is known here.
@@ -18,6 +18,7 @@
 mod batch;
 mod bounds;
 mod bvh;
+mod curve;
 mod cylinder;
 mod disk;
 mod geometry;
@@ -31,6 +32,7 @@ mod surface;
 
 pub use batch::{BATCH, Hits, Rays, Surfaces, Vec2s, Vec3s};
 pub use bounds::Bounds3;
+pub use curve::{CurveBasis, CurveUv, Curves, CurvesError};
 pub use cylinder::Cylinder;
 pub use geometry::{Geometry, ShapeRef};
 pub use patch::BilinearPatch;

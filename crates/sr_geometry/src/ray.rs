@@ -39,13 +39,14 @@ impl Ray {
 pub struct Hit {
     /// Ray parameter, in units of the direction's length.
     pub t: f32,
-    /// Triangles: barycentric coordinate of vertex 1. Disks: coordinate along `u_axis`. Patches: u. Others: 0.
+    /// Triangles: barycentric coordinate of vertex 1. Disks: coordinate along `u_axis`. Patches: u. Curves: place along
+    /// the segment. Others: 0.
     pub b1: f32,
     /// Triangles: barycentric coordinate of vertex 2. Disks: coordinate along `v_axis`. Patches: v. Others: 0.
     pub b2: f32,
     /// The shape that was hit.
     pub shape: ShapeId,
-    /// The triangle within its mesh; 0 for other shapes.
+    /// The triangle within its mesh, the segment of curves; 0 for other shapes.
     pub primitive: u32,
     /// The instance through which it was hit, or [`NO_INSTANCE`].
     pub instance: u32,

@@ -2,7 +2,7 @@
 
 use glam::{Affine3A, Mat3, Vec2, Vec3};
 
-use crate::{BilinearPatch, Bounds3, Cylinder};
+use crate::{BilinearPatch, Bounds3, Curves, CurvesError, Cylinder};
 
 /// A triangle mesh, borrowed. Per-vertex slices are empty or as long as `positions`.
 #[derive(Clone, Copy, Debug, Default)]
@@ -57,6 +57,8 @@ pub enum Shape<'a> {
     Cylinder(Cylinder),
     /// A bilinear patch.
     Patch(BilinearPatch),
+    /// Curves.
+    Curves(Curves<'a>),
 }
 
 /// A placement of a group.
@@ -135,6 +137,14 @@ pub enum GeometryError {
         shape: u32,
         /// Its corners.
         corners: [Vec3; 4],
+    },
+    /// Curves whose arrays do not fit together, or hold what cannot be.
+    #[error("shape {shape}: {error}")]
+    Curves {
+        /// Which, as [`crate::ShapeId`] counts.
+        shape: u32,
+        /// Why.
+        error: CurvesError,
     },
     /// An instance of a group that is not there.
     #[error("instance {instance} places group {group}, but there are only {groups}")]
@@ -226,6 +236,9 @@ impl Shape<'_> {
                 let area = (p11 - p00).cross(p01 - p10).length() + (p10 - p00).cross(p01 - p00).length();
                 let ok = p.corners.iter().all(|p| p.is_finite()) && area > 0.0;
                 ok.then_some(()).ok_or(GeometryError::Patch { shape, corners: p.corners })
+            }
+            Shape::Curves(curves) => {
+                curves.validate().map_err(|error| GeometryError::Curves { shape, error })
             }
         }
     }

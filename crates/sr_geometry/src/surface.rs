@@ -141,6 +141,10 @@ impl Geometry {
                 cylinder.located(ray.at(hit.t))
             }
             ShapeRef::Patch(patch) => patch.located(Vec2::new(hit.b1, hit.b2)),
+            ShapeRef::Curves => {
+                let ray = instance.map_or(*ray, |instance| instance.ray_in_group(ray));
+                self.located_on_curve(hit, ray.at(hit.t))
+            }
         };
         instance.map_or(located, |instance| instance.located_in_world(&located)).surface()
     }
@@ -224,6 +228,10 @@ impl Geometry {
                 cylinder.tangents(instance.map_or(surface.p, |instance| instance.point_in_group(surface.p)))
             }
             ShapeRef::Patch(patch) => patch.tangents(Vec2::new(hit.b1, hit.b2)),
+            ShapeRef::Curves => {
+                let near = instance.map_or(surface.p, |instance| instance.point_in_group(surface.p));
+                self.tangents_of_curve(hit, near)
+            }
         };
         instance.map_or(local, |instance| instance.tangents_in_world(&local))
     }
