@@ -5,12 +5,13 @@
 //!
 //! - `mitsuba`, `pbrt`, `gltf`: one folder for each format.
 //! - `output`, `ply`, `pictures`: the files. `notes`: what there is to say.
-//! - `bake`, `directions`: textures and lights as images. `tessellate`: shapes as triangles. `surfaces`: what several
+//! - `bake`, `directions`: textures and lights as images. `tessellate`: shapes as triangles. `curves`: curves as text. `surfaces`: what several
 //!   formats ask of materials.
 //!
 //! Invariant: what a format cannot say is never dropped without a diagnostic.
 
 mod bake;
+mod curves;
 mod directions;
 mod gltf;
 mod mitsuba;
@@ -85,6 +86,7 @@ pub fn inputs(scene: &SceneDesc) -> Vec<PathBuf> {
     let in_groups = scene.groups.iter().flat_map(|group| &group.shapes);
     let meshes = scene.shapes.iter().chain(in_groups).filter_map(|shape| match &shape.geometry {
         Geometry::Mesh(mesh) => Some(mesh.name.as_str()),
+        Geometry::Curves(curves) => Some(curves.name.as_str()),
         _ => None,
     });
     let names: HashSet<&str> = meshes.chain(scene.images.iter().map(|image| image.name.as_str())).collect();

@@ -3,8 +3,8 @@
 use std::f32::consts::{PI, TAU};
 use std::sync::Arc;
 
-use glam::{Vec2, Vec3};
-use sr_scene::{Geometry, MeshDesc};
+use glam::{DVec3, DVec4, Vec2, Vec3};
+use sr_scene::{CurveBasis, CurveUv, CurvesDesc, Geometry, MeshDesc};
 
 /// A shape as a mesh, and what it is called if it was none.
 pub fn mesh(geometry: &Geometry) -> (Arc<MeshDesc>, Option<&'static str>) {
@@ -38,6 +38,7 @@ pub fn mesh(geometry: &Geometry) -> (Arc<MeshDesc>, Option<&'static str>) {
             let inward = frame.determinant() < 0.0;
             (grid((128, 8), inward, *flip_normals, point), "cylinder")
         }
+        Geometry::Curves(curves) => (tubes(curves), "curve"),
         Geometry::Patch { corners: [p00, p10, p01, p11], flip_normals } => {
             let point = |u: f32, v: f32| {
                 let du = (*p10 - *p00).lerp(*p11 - *p01, v);
@@ -48,6 +49,46 @@ pub fn mesh(geometry: &Geometry) -> (Arc<MeshDesc>, Option<&'static str>) {
         }
     };
     (Arc::new(MeshDesc { name: name.into(), ..made }), Some(name))
+}
+
+/// More segments than this are cut more coarsely.
+const MANY_SEGMENTS: usize = 1 << 16;
+
+/// Tubes around curves, without what closes the ends of linear ones.
+fn tubes(curves: &CurvesDesc) -> MeshDesc {
+    let is_along = curves.uv == CurveUv::AlongAround;
+    let cubics: Vec<[DVec4; 4]> = curves.curves().flat_map(|curve| curves.basis.cubics(curve)).collect();
+    let (rows, columns) = if cubics.len() > MANY_SEGMENTS { (2, 4) } else { (6, 12) };
+    let rows = if curves.basis == CurveBasis::Linear { 1 } else { rows };
+    let mut mesh = MeshDesc::default();
+    for (segment, [a, b, c, d]) in cubics.iter().enumerate() {
+        let first = mesh.positions.len() as u32;
+        for row in 0..=rows {
+            let u = f64::from(row) / f64::from(rows);
+            let (ab, bc, cd) = (a.lerp(*b, u), b.lerp(*c, u), c.lerp(*d, u));
+            let (abc, bcd) = (ab.lerp(bc, u), bc.lerp(cd, u));
+            let (at, chord) = (abc.lerp(bcd, u), (*d - *a).truncate().normalize_or(DVec3::Z));
+            let axis = (bcd - abc).truncate().try_normalize().unwrap_or(chord);
+            let up = (DVec3::Z - axis * axis.z).try_normalize().unwrap_or(DVec3::Y);
+            let across = up.cross(axis);
+            for column in 0..=columns {
+                let turn = f64::from(column) / f64::from(columns);
+                let (sin, cos) = (turn * std::f64::consts::TAU).sin_cos();
+                let out = cos * across + sin * up;
+                mesh.positions.push((at.truncate() + at.w.max(0.0) * out).as_vec3());
+                mesh.normals.push(out.as_vec3());
+                let whole = (segment as f64 + u) / cubics.len() as f64;
+                let (u, v) = if is_along { (u, turn) } else { (turn, whole) };
+                mesh.uvs.push(Vec2::new(u as f32, v as f32));
+            }
+        }
+        let stride = columns + 1;
+        for i in (0..rows).flat_map(|row| (0..columns).map(move |column| first + row * stride + column)) {
+            let (a, b, c, d) = (i, i + 1, i + stride, i + stride + 1);
+            mesh.triangles.extend([[a, b, d], [a, d, c]]);
+        }
+    }
+    mesh
 }
 
 /// A surface over (u, v): `point` has the position and the normal. `inward`: do the normals point against
@@ -113,7 +154,7 @@ pub fn with_uvs(mesh: &Arc<MeshDesc>) -> Arc<MeshDesc> {
 
 #[cfg(test)]
 mod tests {
-    use glam::Mat3;
+    use glam::{Mat3, Vec4};
 
     use super::*;
 
@@ -127,6 +168,12 @@ mod tests {
             .sum()
     }
 
+    fn curve(uv: CurveUv) -> Geometry {
+        let points = (0..14).map(|i| Vec4::new(i as f32, (i % 2) as f32, 0.0, 0.1)).collect();
+        let (name, basis, firsts) = (String::new(), CurveBasis::BSpline, vec![0, 7]);
+        Geometry::Curves(Arc::new(CurvesDesc { name, basis, uv, points, firsts }))
+    }
+
     /// The front is where normals point, whatever frame and flip.
     #[test]
     fn triangles_face_along_their_normals() {
@@ -138,6 +185,8 @@ mod tests {
                     Geometry::Cylinder { base: Vec3::ONE, frame, radius: 2.0, length: 3.0, flip_normals },
                     Geometry::Disk { center: Vec3::ONE, u_axis: frame.x_axis, v_axis: Vec3::Y, flip_normals },
                     Geometry::Patch { corners: [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::ONE], flip_normals },
+                    curve(CurveUv::AlongAround),
+                    curve(CurveUv::AroundAlong),
                 ];
                 for shape in shapes {
                     let (mesh, name) = mesh(&shape);

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use glam::{Affine2, Mat3, Mat4, Vec2, Vec3};
+use glam::{Affine2, Mat3, Mat4, Vec2, Vec3, Vec4};
 use sr_export::{Target, export};
 use sr_scene::{
-    CameraDesc, ColorInput, Emission, FilmDesc, Filter, FilterDesc, FovAxis, Geometry, Image,
-    IntensityProfile, Lens, LightDesc, MaterialDesc, MaterialId, MeshColorOf, MeshDesc,
+    CameraDesc, ColorInput, CurveBasis, CurveUv, CurvesDesc, Emission, FilmDesc, Filter, FilterDesc, FovAxis,
+    Geometry, Image, IntensityProfile, Lens, LightDesc, MaterialDesc, MaterialId, MeshColorOf, MeshDesc,
     MetallicRoughnessDesc, MicrofacetKind, Pixels, PrincipledDesc, PrincipledThinDesc, Projection, Rgb,
     ScalarInput, SceneDesc, Settings, ShapeDesc, Span, SphereMapping, TextureDesc, TextureId, Tilting, Wrap,
 };
@@ -109,6 +109,12 @@ fn with_shape(geometry: Geometry) -> SceneDesc {
     let mut scene = scene();
     scene.shapes[0].geometry = geometry;
     scene
+}
+
+fn curves(basis: CurveBasis) -> Geometry {
+    let points = [0.0, 1.0, 2.0, 3.0].map(|x| Vec4::new(x, 0.0, 0.0, 0.1)).to_vec();
+    let (uv, firsts) = (CurveUv::AroundAlong, vec![0]);
+    Geometry::Curves(Arc::new(CurvesDesc { name: "curves".into(), basis, uv, points, firsts }))
 }
 
 fn with_projection(projection: Projection) -> SceneDesc {
@@ -420,6 +426,8 @@ fn others() -> Vec<(&'static str, &'static str, SceneDesc)> {
             "bilinearpatch",
             with_shape(Geometry::Patch { corners: [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::ONE], flip_normals }),
         ),
+        ("shape", "bsplinecurve", with_shape(curves(CurveBasis::BSpline))),
+        ("shape", "linearcurve", with_shape(curves(CurveBasis::Linear))),
         ("light", "area", emitting(GREY)),
         ("light", "area, textured", emitting(id)),
         ("light", "constant", with_light(LightDesc::Constant { radiance: Rgb::ONE, span: span() })),

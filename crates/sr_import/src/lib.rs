@@ -6,13 +6,14 @@
 //! - `mitsuba`, `pbrt`, `gltf`: one folder for each format: text to the calls of an `Assembly`. `format`: which one it is.
 //! - `mesh_file`: a mesh as a scene of its own.
 //! - `assembly`: what all formats share: a description as it grows.
-//! - `mesh`, `images`, `jpeg`, `ies`: the files that scenes name, read in parallel, each once.
+//! - `mesh`, `curves`, `images`, `jpeg`, `ies`: the files that scenes name, read in parallel, each once.
 //!
 //! Invariant: no input makes this crate panic, loop for ever or use memory without bound; and nothing a file
 //! asks for is dropped without a diagnostic.
 
 mod assembly;
 mod color_space;
+mod curves;
 mod files;
 mod format;
 mod gltf;

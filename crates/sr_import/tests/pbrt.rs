@@ -426,7 +426,7 @@ fn other_files_are_read_where_they_are_named() {
 fn what_is_not_done_is_said() {
     for (text, code) in [
         ("MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"", "pbrt::unsupported-medium"),
-        ("Shape \"curve\" \"point3 P\" [ 0 0 0 ]", "pbrt::unsupported-shape"),
+        ("Shape \"paraboloid\" \"float radius\" 1", "pbrt::unsupported-shape"),
         ("Material \"hair\"", "pbrt::unsupported-material"),
         ("Material \"subsurface\" \"float mfp\" 1", "pbrt::unsupported-material"),
         ("Material \"measured\" \"string filename\" \"a.bsdf\"", "pbrt::unsupported-material"),

@@ -5,10 +5,10 @@
 use std::sync::Arc;
 
 use sr_geometry::{
-    BilinearPatch, Cylinder, Disk, Geometry, GeometryError, GeometryInput, Hit, Instance, Ray, Shape,
-    ShapeId, Sphere, TriangleMesh,
+    BilinearPatch, CurveBasis, CurveUv, Curves, Cylinder, Disk, Geometry, GeometryError, GeometryInput, Hit,
+    Instance, Ray, Shape, ShapeId, Sphere, TriangleMesh,
 };
-use sr_scene::{CameraDesc, Emission, MaterialId, MeshDesc, SceneDesc, Settings, ShapeDesc};
+use sr_scene::{CameraDesc, CurvesDesc, Emission, MaterialId, MeshDesc, SceneDesc, Settings, ShapeDesc};
 use thiserror::Error;
 
 use crate::light::{AreaLight, Compiled, Extended, LightId, Lights, Triangle, compile_light};
@@ -175,7 +175,21 @@ fn input_shape(shape: &ShapeDesc) -> Shape<'_> {
         &sr_scene::Geometry::Patch { corners, flip_normals } => {
             Shape::Patch(BilinearPatch { corners, flip_normals })
         }
+        sr_scene::Geometry::Curves(curves) => Shape::Curves(input_curves(curves)),
     }
+}
+
+fn input_curves(curves: &CurvesDesc) -> Curves<'_> {
+    let basis = match curves.basis {
+        sr_scene::CurveBasis::Linear => CurveBasis::Linear,
+        sr_scene::CurveBasis::BSpline => CurveBasis::BSpline,
+        sr_scene::CurveBasis::Bezier => CurveBasis::Bezier,
+    };
+    let uv = match curves.uv {
+        sr_scene::CurveUv::AroundAlong => CurveUv::AroundAlong,
+        sr_scene::CurveUv::AlongAround => CurveUv::AlongAround,
+    };
+    Curves { basis, uv, points: &curves.points, firsts: &curves.firsts }
 }
 
 fn input_mesh(mesh: &Arc<MeshDesc>) -> TriangleMesh<'_> {
@@ -254,6 +268,6 @@ fn area_light(
             Some(AreaLight::cylinder(sides, emission.radiance, textures))
         }
         // Refused when the scene was validated.
-        sr_scene::Geometry::Patch { .. } => None,
+        sr_scene::Geometry::Patch { .. } | sr_scene::Geometry::Curves(_) => None,
     }
 }

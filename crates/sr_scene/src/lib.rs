@@ -4,6 +4,7 @@
 //! [`Diagnostics`] with two renderings. No file format, no ray, no sampling algorithm lives here.
 
 pub mod camera;
+pub mod curves;
 pub mod desc;
 pub mod diagnostic;
 pub mod film;
@@ -19,6 +20,7 @@ pub mod texture;
 mod validate;
 
 pub use camera::{CameraDesc, FovAxis, Lens, Projection};
+pub use curves::{CurveBasis, CurveUv, CurvesDesc};
 pub use desc::{MaterialId, SceneDesc, Settings, TextureId};
 pub use diagnostic::{Diagnostic, Diagnostics, Severity, SourceId, Sources, Span};
 pub use film::{Crop, FilmDesc, FilmWindow, FilterDesc};

@@ -1,10 +1,10 @@
-//! Shapes: meshes, spheres, disks, cylinders and patches, what they are made of, and what they emit.
+//! Shapes: meshes, spheres, disks, cylinders, patches and curves, what they are made of, and what they emit.
 
 use std::sync::Arc;
 
 use glam::{Affine3A, Vec2, Vec3};
 
-use crate::{ColorInput, MaterialId, Rgb, diagnostic::Span};
+use crate::{ColorInput, CurvesDesc, MaterialId, Rgb, diagnostic::Span};
 
 /// A shape in the space of the list that holds it (world space for [`crate::SceneDesc::shapes`]).
 #[derive(Clone, Debug)]
@@ -70,6 +70,8 @@ pub enum Geometry {
         /// Does the normal point against ∂p/∂u × ∂p/∂v?
         flip_normals: bool,
     },
+    /// Curves.
+    Curves(Arc<CurvesDesc>),
 }
 
 /// A triangle mesh. Per-vertex arrays are empty or as long as `positions`.

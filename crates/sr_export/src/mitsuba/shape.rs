@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use glam::{Mat3, Mat4, Vec3};
-use sr_scene::{Geometry, MeshDesc, ShapeDesc};
+use sr_scene::{CurveBasis, CurveUv, CurvesDesc, Geometry, MeshDesc, ShapeDesc};
 
 use super::Writer;
 use super::xml::Xml;
-use crate::tessellate;
+use crate::{curves, surfaces, tessellate};
 
 impl Writer<'_> {
     pub(super) fn groups(&mut self, xml: &mut Xml) {
@@ -61,6 +61,7 @@ impl Writer<'_> {
                 xml.transform(placed(*frame * size, *base));
                 xml.boolean("flip_normals", *flip_normals);
             }
+            Geometry::Curves(curves) => self.curves(xml, curves, shape),
             Geometry::Patch { corners, flip_normals } => {
                 if self.own("bilinear patch", &shape.span, "triangles are written") {
                     xml.begin("shape", &[("type", "bilinearpatch")]);
@@ -81,6 +82,23 @@ impl Writer<'_> {
             xml.end();
         }
         xml.end();
+    }
+
+    /// Begins a shape of curves.
+    fn curves(&mut self, xml: &mut Xml, curves: &CurvesDesc, shape: &ShapeDesc) {
+        let kind = if curves.basis == CurveBasis::Linear { "linearcurve" } else { "bsplinecurve" };
+        if curves.uv == CurveUv::AlongAround && surfaces::has_texture(self.scene, shape.material) {
+            let message = "the texture coordinates of Mitsuba's curves are not pbrt's";
+            self.notes.push(
+                "convert::curves",
+                &shape.span,
+                message,
+                "u runs around them, and v along all of them",
+            );
+        }
+        let file = self.files.bytes_in_folder("curves", &curves.name, "txt", curves::file(curves));
+        xml.begin("shape", &[("type", kind)]);
+        xml.string("filename", &file);
     }
 
     /// Begins a shape of triangles.

@@ -136,6 +136,7 @@ impl Writer<'_> {
                     outside(*base, *radius) || outside(*base + *length * frame.z_axis, *radius)
                 }
                 Geometry::Patch { corners, .. } => corners.iter().any(|p| outside(*p, 0.0)),
+                Geometry::Curves(curves) => curves.points.iter().any(|p| outside(p.truncate(), p.w)),
             }
         };
         let in_groups = self.scene.instances.iter().flat_map(|instance| {

@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use glam::{Mat3, Mat4, Vec3};
-use sr_scene::{Geometry, MeshDesc, ShapeDesc};
+use sr_scene::{CurveBasis, CurveUv, CurvesDesc, Geometry, MeshDesc, ShapeDesc};
 
 use super::Writer;
 use super::text::{Params, Text};
+use crate::curves::Spline;
 use crate::{surfaces, tessellate};
 
 impl Writer<'_> {
@@ -73,6 +74,7 @@ impl Writer<'_> {
                 let params = alpha.float("radius", *radius).float("zmin", 0.0).float("zmax", *length);
                 text.directive("Shape", "cylinder", &params);
             }
+            Geometry::Curves(curves) => self.curves(text, curves, (shape, is_textured), &alpha),
             Geometry::Patch { corners, flip_normals } => {
                 reverse(text, *flip_normals);
                 let numbers: Vec<f32> = corners.iter().flat_map(|p| p.to_array()).collect();
@@ -81,6 +83,34 @@ impl Writer<'_> {
             }
         }
         text.line("AttributeEnd");
+    }
+
+    fn curves(
+        &mut self,
+        text: &mut Text,
+        curves: &CurvesDesc,
+        (shape, is_textured): (&ShapeDesc, bool),
+        params: &Params,
+    ) {
+        let mut say = |message: &str, instead: &str| {
+            self.notes.push("convert::curves", &shape.span, message, instead);
+        };
+        say("pbrt's curves are flat", "flat ones with the normals of round ones are written");
+        if curves.basis == CurveBasis::Linear {
+            say("pbrt's curves have no spheres at their joints and ends", "they are cut off there");
+        }
+        if curves.uv == CurveUv::AroundAlong && is_textured {
+            say("the texture coordinates of pbrt's curves are not ours", "u runs along, and v across");
+        }
+        let (splines, is_linear) = crate::curves::splines(curves);
+        if !is_linear {
+            say("the widths of pbrt's curves are linear", "they are so within each segment");
+        }
+        for Spline { points, widths } in splines {
+            let params = params.clone().string("type", "cylinder").floats("point3 P", &points);
+            let params = params.float("width0", widths[0]).float("width1", widths[1]);
+            text.directive("Shape", "curve", &params);
+        }
     }
 
     fn mesh(&mut self, text: &mut Text, mesh: &Arc<MeshDesc>, is_textured: bool, params: Params) {

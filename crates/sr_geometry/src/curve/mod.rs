@@ -74,7 +74,7 @@ pub struct Curves<'a> {
     pub basis: CurveBasis,
     /// What (u, v) are.
     pub uv: CurveUv,
-    /// Control points: position, and radius, not below 0.
+    /// Control points: position, and radius, not below 0. Those of B-splines may be; where the curve's is, it is not met.
     pub points: &'a [Vec4],
     /// At which control point each curve begins: from 0, and growing.
     pub firsts: &'a [u32],
@@ -127,7 +127,8 @@ impl Curves<'_> {
     }
 
     pub(crate) fn validate(&self) -> Result<(), CurvesError> {
-        let is_bad = |p: &Vec4| !(p.is_finite() && p.w >= 0.0);
+        let is_spline = self.basis == CurveBasis::BSpline;
+        let is_bad = |p: &Vec4| !(p.is_finite() && (p.w >= 0.0 || is_spline));
         if let Some(point) = self.points.par_iter().position_first(is_bad) {
             return Err(CurvesError::Point { point, value: self.points[point] });
         }

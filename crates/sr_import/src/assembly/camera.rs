@@ -84,6 +84,7 @@ impl Bounds {
                 }
             }
             Geometry::Patch { corners, .. } => corners.iter().for_each(|&p| add(p)),
+            Geometry::Curves(curves) => curves.points.iter().for_each(|p| add(p.truncate())),
             Geometry::Disk { center, u_axis, v_axis, .. } => {
                 for axis in [*u_axis, -*u_axis, *v_axis, -*v_axis] {
                     add(*center + axis);

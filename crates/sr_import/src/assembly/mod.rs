@@ -17,8 +17,8 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use sr_scene::{
-    CameraDesc, ColorInput, Diagnostic, Diagnostics, GroupDesc, Image, InstanceDesc, LightDesc, MaterialDesc,
-    MaterialId, SceneDesc, Settings, ShapeDesc, Span, TextureDesc, TextureId,
+    CameraDesc, ColorInput, CurvesDesc, Diagnostic, Diagnostics, Geometry, GroupDesc, Image, InstanceDesc,
+    LightDesc, MaterialDesc, MaterialId, SceneDesc, Settings, ShapeDesc, Span, TextureDesc, TextureId,
 };
 
 use crate::files;
@@ -144,6 +144,27 @@ impl<'d> Assembly<'d> {
     ) {
         self.add_pending(mesh, ShapeSlot::Group(group, self.groups[group].shapes.len()), &shape.span);
         self.groups[group].shapes.push(shape);
+    }
+
+    /// Adds curves to the last shape of the scene or of a group, if that is curves of this kind and material, or else as
+    /// a shape.
+    pub fn add_curve(&mut self, group: Option<usize>, curves: CurvesDesc, material: MaterialId, span: &Span) {
+        let shapes = match group {
+            Some(group) => &mut self.groups[group].shapes,
+            None => &mut self.shapes,
+        };
+        if let Some(ShapeDesc { geometry: Geometry::Curves(last), material: same, .. }) = shapes.last_mut()
+            && *same == material
+            && (last.basis, last.uv) == (curves.basis, curves.uv)
+        {
+            let last = Arc::make_mut(last);
+            let first = last.points.len() as u32;
+            last.points.extend(curves.points);
+            last.firsts.extend(curves.firsts.iter().map(|at| first + at));
+            return;
+        }
+        let geometry = Geometry::Curves(Arc::new(curves));
+        shapes.push(ShapeDesc { geometry, material, emission: None, span: span.clone() });
     }
 
     fn add_pending(&mut self, mesh: Option<(MeshSource, Placement)>, shape: ShapeSlot, span: &Span) {

@@ -61,7 +61,7 @@ pub const SHAPES: &Known = &[
     ("sphere", Near("partial ones are whole")),
     ("disk", Near("partial ones are whole; u and v are swapped and mirrored")),
     ("cylinder", Near("partial ones are whole")),
-    ("curve", Reported("it is left out")),
+    ("curve", Near("flat ones and ribbons are round; v runs around")),
 ];
 
 pub const MATERIALS: &Known = &[

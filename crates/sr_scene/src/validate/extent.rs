@@ -42,6 +42,9 @@ impl Extent {
             }
             Geometry::Cylinder { base, radius, length, .. } => around(*base, (radius + length).into()),
             Geometry::Patch { corners, .. } => Self::of_points(*corners),
+            Geometry::Curves(curves) => {
+                Self::of_points(curves.points.iter().flat_map(|p| [p.truncate() - p.w, p.truncate() + p.w]))
+            }
         }
     }
 

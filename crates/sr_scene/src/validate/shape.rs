@@ -49,6 +49,14 @@ impl Check<'_> {
                     self.error("scene::emitting-patch", span, "a bilinear patch cannot emit");
                 }
             }
+            Geometry::Curves(curves) => {
+                if let Some(fault) = curves.fault() {
+                    self.error("scene::curves", span, format!("{}: {fault}", curves.name));
+                }
+                if shape.emission.is_some() {
+                    self.error("scene::emitting-curves", span, "curves cannot emit");
+                }
+            }
             Geometry::Mesh(mesh) => {
                 let n = mesh.positions.len();
                 let fits = |len: usize, count: usize| len == 0 || len == count;

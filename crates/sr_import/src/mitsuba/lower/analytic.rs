@@ -1,11 +1,14 @@
-//! Shapes that are no meshes: spheres, disks, cylinders, bilinear patches.
+//! Shapes that are no meshes: spheres, disks, cylinders, bilinear patches, curves.
+
+use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
-use sr_scene::{Diagnostic, Geometry};
+use sr_scene::{CurveBasis, Diagnostic, Geometry};
 
 use super::Lowering;
 use crate::mitsuba::node::Node;
 use crate::mitsuba::props::Props;
+use crate::{curves, files};
 
 impl<'a> Lowering<'a, '_> {
     pub(super) fn sphere(&mut self, node: &'a Node, props: &mut Props<'a>) -> Geometry {
@@ -99,6 +102,31 @@ impl<'a> Lowering<'a, '_> {
             to_world.transform_point3(corner).as_vec3()
         });
         Geometry::Patch { corners, flip_normals }
+    }
+
+    pub(super) fn curves(&mut self, node: &'a Node, props: &mut Props<'a>) -> Option<Geometry> {
+        let basis = if node.kind == "linearcurve" { CurveBasis::Linear } else { CurveBasis::BSpline };
+        let to_world = props.transform("to_world", self.out.d);
+        let Some((name, span)) = props.string("filename", self.out.d) else {
+            let message = format!("{} needs a \"filename\"", node.title());
+            self.out.d.push(Diagnostic::error("mitsuba::missing-property", &node.span, message));
+            return None;
+        };
+        let path = self.out.find(name);
+        match curves::load(&path, basis, &to_world) {
+            Ok((curves, note)) => {
+                if let Some(note) = note {
+                    let message = format!("{}: {note}", path.display());
+                    let warning = Diagnostic::warning("file::curves", span, message);
+                    self.out.d.push(warning.consequence("those after the fourth are ignored"));
+                }
+                Some(Geometry::Curves(Arc::new(curves)))
+            }
+            Err(reason) => {
+                self.out.d.push(files::error("file::bad-curves", span, "curves", &path, &reason));
+                None
+            }
+        }
     }
 }
 

@@ -79,11 +79,11 @@ impl<'a> Lowering<'a, '_> {
             }
         };
         let mut emission = self.emission(&mut props);
-        if emission.is_some() && node.kind == "bilinearpatch" {
-            self.out.d.push(
-                Diagnostic::warning("mitsuba::emitting-patch", &node.span, "a bilinear patch cannot emit")
-                    .consequence("it is rendered without its emitter"),
-            );
+        if emission.is_some()
+            && let Some((code, message)) = no_light(&node.kind)
+        {
+            let warning = Diagnostic::warning(code, &node.span, message);
+            self.out.d.push(warning.consequence("it is rendered without its emitter"));
             emission = None;
         }
         for name in ["interior", "exterior"] {
@@ -140,6 +140,7 @@ impl<'a> Lowering<'a, '_> {
             "disk" => Some(Form::Ready(self.disk(node, props))),
             "cylinder" => Some(Form::Ready(self.cylinder(node, props))),
             "bilinearpatch" => Some(Form::Ready(self.patch(props))),
+            "linearcurve" | "bsplinecurve" => self.curves(node, props).map(Form::Ready),
             "rectangle" => {
                 // Its front stays the front under mirrors: Mitsuba's shading frame, which decides, is that of +Z placed.
                 let placement =
@@ -244,5 +245,14 @@ impl<'a> Lowering<'a, '_> {
             }
         };
         (levels > 0).then_some(Subdivision { scheme, levels })
+    }
+}
+
+/// What is said of a shape that cannot emit.
+fn no_light(kind: &str) -> Option<(&'static str, &'static str)> {
+    match kind {
+        "bilinearpatch" => Some(("mitsuba::emitting-patch", "a bilinear patch cannot emit")),
+        "linearcurve" | "bsplinecurve" => Some(("mitsuba::emitting-curves", "curves cannot emit")),
+        _ => None,
     }
 }

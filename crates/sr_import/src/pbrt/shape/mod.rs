@@ -1,7 +1,9 @@
 //! Shapes: form, material, light.
 //!
 //! - `quadric`: spheres, disks, cylinders. `mesh`: triangles, in the file or in others. `patch`: bilinear patches.
+//!   `curve`: curves.
 
+mod curve;
 mod mesh;
 mod patch;
 mod quadric;
@@ -79,6 +81,10 @@ impl Reader<'_> {
     pub(super) fn shape(&mut self, kind: &str, mut params: Params) {
         let span = params.span.clone();
         let emits = self.state.area_light.is_some();
+        if kind == "curve" {
+            self.add_curve(params);
+            return;
+        }
         let forms = match kind {
             "sphere" => self.sphere(&mut params),
             "disk" => self.disk(&mut params),
@@ -100,6 +106,20 @@ impl Reader<'_> {
         for form in forms {
             self.add_form(form, material, &span);
         }
+    }
+
+    /// Hair is many curves: those of one material that follow one another are one shape.
+    fn add_curve(&mut self, mut params: Params) {
+        let span = params.span.clone();
+        let curve = self.bezier_curve(&mut params);
+        let material = self.shape_material(&mut params);
+        params.finish(&mut self.notes());
+        let Some(curve) = curve else { return };
+        if self.state.area_light.is_some() {
+            let message = "curves cannot emit";
+            self.warn("pbrt::emitting-curves", &span, message, "they are rendered without their light");
+        }
+        self.out.add_curve(self.object, curve, material, &span);
     }
 
     /// The material in force, with holes where `alpha` is below 1.
