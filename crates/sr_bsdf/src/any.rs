@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3};
 
 use crate::{
     Blend, Bsdf, BsdfSample, CoatedConductor, CompensatedConductor, CompensatedDielectric, Conductor,
-    Dielectric, Diffuse, DiffuseTransmission, Eon, Lobes, Mask, MetallicRoughness, MicrofacetShape,
+    Dielectric, Diffuse, DiffuseTransmission, Eon, Hair, Lobes, Mask, MetallicRoughness, MicrofacetShape,
     OrenNayar, Plastic, Principled, PrincipledThin, Rgb, RoughConductor, RoughDielectric, RoughPlastic,
     ThinDielectric,
 };
@@ -98,6 +98,8 @@ any! {
     MetallicRoughness(MetallicRoughness), from;
     /// Leaves, paper, frosted panes.
     PrincipledThin(PrincipledThin), from;
+    /// Hair and fur.
+    Hair(Hair), from;
 }
 
 any! {

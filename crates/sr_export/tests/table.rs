@@ -6,9 +6,10 @@ use glam::{Affine2, Mat3, Mat4, Vec2, Vec3, Vec4};
 use sr_export::{Target, export};
 use sr_scene::{
     CameraDesc, ColorInput, CurveBasis, CurveUv, CurvesDesc, Emission, FilmDesc, Filter, FilterDesc, FovAxis,
-    Geometry, Image, IntensityProfile, Lens, LightDesc, MaterialDesc, MaterialId, MeshColorOf, MeshDesc,
-    MetallicRoughnessDesc, MicrofacetKind, Pixels, PrincipledDesc, PrincipledThinDesc, Projection, Rgb,
-    ScalarInput, SceneDesc, Settings, ShapeDesc, Span, SphereMapping, TextureDesc, TextureId, Tilting, Wrap,
+    Geometry, HairAbsorption, HairDesc, Image, IntensityProfile, Lens, LightDesc, MaterialDesc, MaterialId,
+    MeshColorOf, MeshDesc, MetallicRoughnessDesc, MicrofacetKind, Pixels, PrincipledDesc, PrincipledThinDesc,
+    Projection, Rgb, ScalarInput, SceneDesc, Settings, ShapeDesc, Span, SphereMapping, TextureDesc,
+    TextureId, Tilting, Wrap,
 };
 
 const GREY: ColorInput = ColorInput::Constant(Rgb::splat(0.5));
@@ -115,6 +116,11 @@ fn curves(basis: CurveBasis) -> Geometry {
     let points = [0.0, 1.0, 2.0, 3.0].map(|x| Vec4::new(x, 0.0, 0.0, 0.1)).to_vec();
     let (uv, firsts) = (CurveUv::AroundAlong, vec![0]);
     Geometry::Curves(Arc::new(CurvesDesc { name: "curves".into(), basis, uv, points, firsts }))
+}
+
+fn hair(absorption: HairAbsorption) -> MaterialDesc {
+    let (beta_m, beta_n, along_u) = (SOME, SOME, false);
+    MaterialDesc::Hair(HairDesc { absorption, eta: 1.55, beta_m, beta_n, alpha: 0.03, along_u })
 }
 
 fn with_projection(projection: Projection) -> SceneDesc {
@@ -276,6 +282,16 @@ fn materials() -> Vec<(&'static str, SceneDesc)> {
         ("principled", opaque(MaterialDesc::Principled(principled))),
         ("principledthin", clear(MaterialDesc::PrincipledThin(thin))),
         ("metallicroughness", opaque(MaterialDesc::MetallicRoughness(metallic_roughness))),
+        ("hair", {
+            let pigments = HairAbsorption::Pigments { eumelanin: SOME, pheomelanin: NONE };
+            clear(hair(pigments))
+        }),
+        ("hair, of a color", clear(hair(HairAbsorption::Color(GREY)))),
+        ("hair, textured", {
+            let mut scene = clear(hair(HairAbsorption::Color(ColorInput::Texture(TextureId(0)))));
+            scene.textures.push(bitmap(Affine2::IDENTITY, Wrap::Repeat));
+            scene
+        }),
         ("twosided, two materials", {
             let mut scene =
                 with_material(MaterialDesc::TwoSided { front: MaterialId(0), back: MaterialId(0) }, false);

@@ -427,7 +427,6 @@ fn what_is_not_done_is_said() {
     for (text, code) in [
         ("MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"", "pbrt::unsupported-medium"),
         ("Shape \"paraboloid\" \"float radius\" 1", "pbrt::unsupported-shape"),
-        ("Material \"hair\"", "pbrt::unsupported-material"),
         ("Material \"subsurface\" \"float mfp\" 1", "pbrt::unsupported-material"),
         ("Material \"measured\" \"string filename\" \"a.bsdf\"", "pbrt::unsupported-material"),
         ("Texture \"t\" \"float\" \"fbm\" \"integer octaves\" 3", "pbrt::unsupported-texture"),

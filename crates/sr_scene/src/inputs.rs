@@ -1,6 +1,6 @@
 //! What descriptions are made of: the textures and the materials that a material holds.
 
-use crate::{ColorInput, MaterialDesc, MaterialId, ScalarInput, TextureDesc, TextureId};
+use crate::{ColorInput, HairAbsorption, MaterialDesc, MaterialId, ScalarInput, TextureDesc, TextureId};
 
 impl From<ColorInput> for Option<TextureId> {
     fn from(input: ColorInput) -> Self {
@@ -98,6 +98,15 @@ impl MaterialDesc {
                 m.transmission.into(),
                 m.anisotropy.into(),
             ]),
+            Self::Hair(hair) => {
+                let [first, second] = match hair.absorption {
+                    HairAbsorption::Coefficient(color) | HairAbsorption::Color(color) => [color.into(), None],
+                    HairAbsorption::Pigments { eumelanin, pheomelanin } => {
+                        [eumelanin.into(), pheomelanin.into()]
+                    }
+                };
+                given([first, second, hair.beta_m.into(), hair.beta_n.into()])
+            }
             Self::TwoSided { .. } => Vec::new(),
             Self::Mask { opacity, .. } => given([opacity.into()]),
             Self::Blend { weight, .. } => given([weight.into()]),

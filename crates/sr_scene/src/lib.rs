@@ -27,8 +27,8 @@ pub use film::{Crop, FilmDesc, FilmWindow, FilterDesc};
 pub use image::{Image, Pixels};
 pub use light::{LightDesc, MAX_PORTALS, Portal, SphereMapping};
 pub use material::{
-    ColorInput, MaterialDesc, MetallicRoughnessDesc, MicrofacetKind, PrincipledDesc, PrincipledThinDesc,
-    ScalarInput, Tilting,
+    ColorInput, HairAbsorption, HairDesc, MaterialDesc, MetallicRoughnessDesc, MicrofacetKind,
+    PrincipledDesc, PrincipledThinDesc, ScalarInput, Tilting,
 };
 pub use profile::IntensityProfile;
 pub use shape::{Emission, Geometry, GroupDesc, InstanceDesc, MeshDesc, ShapeDesc};

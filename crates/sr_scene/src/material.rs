@@ -165,6 +165,8 @@ pub enum MaterialDesc {
     PrincipledThin(PrincipledThinDesc),
     /// The metallic-roughness material of glTF 2.0.
     MetallicRoughness(MetallicRoughnessDesc),
+    /// Hair and fur.
+    Hair(HairDesc),
     /// One model on each side of the surface.
     TwoSided {
         /// Seen from the side of the normal.
@@ -316,4 +318,37 @@ pub struct MetallicRoughnessDesc {
     pub anisotropy: ScalarInput,
     /// Along which direction from the tangent, in radians.
     pub anisotropy_rotation: f32,
+}
+
+/// Hair and fur (Chiang, Bitterli, Tappan & Burley 2016).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HairDesc {
+    /// What the fibre absorbs.
+    pub absorption: HairAbsorption,
+    /// Index of refraction of the fibre over that around it.
+    pub eta: f32,
+    /// Roughness along the fibre, in [0, 1].
+    pub beta_m: ScalarInput,
+    /// Roughness around the fibre, in [0, 1].
+    pub beta_n: ScalarInput,
+    /// How far the scales on the fibre are tilted, in radians.
+    pub alpha: f32,
+    /// Does the fibre run along ∂p/∂u, as pbrt's? Else across it and the normal, as Mitsuba's.
+    pub along_u: bool,
+}
+
+/// What hair absorbs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum HairAbsorption {
+    /// On a way as long as the radius.
+    Coefficient(ColorInput),
+    /// As much as gives it this color, where light scatters often.
+    Color(ColorInput),
+    /// What pigments of these concentrations do.
+    Pigments {
+        /// Of brown and black hair.
+        eumelanin: ScalarInput,
+        /// Of red hair.
+        pheomelanin: ScalarInput,
+    },
 }

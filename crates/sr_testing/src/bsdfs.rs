@@ -12,7 +12,7 @@ use sr_bsdf::{
     RoughPlasticTables, SmoothCoat, ThinDielectric,
 };
 
-use crate::{blends, compensated, principled};
+use crate::{blends, compensated, hair, principled};
 
 /// A name that tells cases apart, a model, and a direction from which it reflects or transmits.
 pub type BsdfCase = (String, AnyBsdf<'static>, Vec3);
@@ -63,14 +63,16 @@ pub fn lossless_models() -> Vec<(String, AnyBsdf<'static>)> {
         models.push((format!("white EON {roughness}"), Eon::new(Rgb::ONE, roughness).into()));
     }
     models.extend(compensated::white_models());
+    models.extend(hair::white_models());
     models
 }
 
 /// Is the model of this name the same with directions exchanged? A tilted normal is not: it weighs light by the cosine
 /// with one normal, and receives it by that with another (Veach 1997, §5.3). Mitsuba's thin principled model leaves out
-/// transmission by facets that the transmitted direction meets again, but not by those that the other one does.
+/// transmission by facets that the transmitted direction meets again, but not by those that the other one does. Hair lets
+/// light out where it came in, as if that were where the viewer looks.
 pub fn is_reciprocal(name: &str) -> bool {
-    !["tilted", "two sides", "thin principled"].iter().any(|start| name.starts_with(start))
+    !["tilted", "two sides", "thin principled", "hair"].iter().any(|start| name.starts_with(start))
 }
 
 /// The most light that a model of this name may return for each unit that it receives. Burley's models add lobes without
@@ -116,6 +118,7 @@ pub fn bsdf_models() -> Vec<(String, AnyBsdf<'static>)> {
         models.push((name, DiffuseTransmission::new(reflectance, transmittance).into()));
     }
     models.extend(blends::models());
+    models.extend(hair::models());
     models.extend(principled::models());
     models.extend(compensated::models());
     for coat in COATS.iter() {

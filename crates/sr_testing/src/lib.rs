@@ -7,6 +7,7 @@ pub mod densities;
 pub mod density_tests;
 pub mod distributions;
 pub mod filters;
+mod hair;
 pub mod lights;
 pub mod lobe;
 mod principled;

@@ -1,8 +1,9 @@
 //! Materials: all are metallic-roughness, with the extensions that they need.
 
+use sr_bsdf::hair::{color_of_absorption, pigments};
 use sr_scene::{
-    ColorInput, MaterialDesc, MaterialId, MeshColorOf, MetallicRoughnessDesc, Rgb, ScalarInput, Span,
-    TextureDesc, TextureId,
+    ColorInput, HairAbsorption, MaterialDesc, MaterialId, MeshColorOf, MetallicRoughnessDesc, Rgb,
+    ScalarInput, Span, TextureDesc, TextureId,
 };
 
 use super::Writer;
@@ -360,6 +361,19 @@ impl Writer<'_> {
                 }
             }
             MaterialDesc::MetallicRoughness(m) => *m,
+            MaterialDesc::Hair(hair) => {
+                approximated("hair", "a diffuse surface of about its color is written");
+                let beta_n = self.baker.average_number(hair.beta_n);
+                let of = |sigma_a: Rgb| ColorInput::Constant(color_of_absorption(sigma_a, beta_n));
+                diffuse(match hair.absorption {
+                    HairAbsorption::Color(color) => color,
+                    HairAbsorption::Coefficient(sigma_a) => of(self.baker.average(sigma_a)),
+                    HairAbsorption::Pigments { eumelanin, pheomelanin } => {
+                        let amounts = [eumelanin, pheomelanin].map(|p| self.baker.average_number(p));
+                        of(pigments(amounts[0], amounts[1]))
+                    }
+                })
+            }
             MaterialDesc::TwoSided { front, back } => {
                 if front != back {
                     approximated("material that differs between its sides", "that of the front is written");

@@ -2,9 +2,10 @@
 
 use std::f32::consts::FRAC_1_SQRT_2;
 
+use sr_bsdf::hair::absorption_of_color;
 use sr_scene::{
-    ColorInput, MaterialDesc, MaterialId, MetallicRoughnessDesc, MicrofacetKind, PrincipledDesc,
-    PrincipledThinDesc, ScalarInput, Span, Tilting,
+    ColorInput, HairAbsorption, HairDesc, MaterialDesc, MaterialId, MetallicRoughnessDesc, MicrofacetKind,
+    PrincipledDesc, PrincipledThinDesc, ScalarInput, Span, Tilting,
 };
 
 use super::Writer;
@@ -189,6 +190,7 @@ impl Writer<'_> {
                     false => self.as_principled(xml, id, m),
                 }
             }
+            MaterialDesc::Hair(hair) => self.hair(xml, id, hair, span),
             MaterialDesc::TwoSided { front, back } => self.two_sided(xml, id, [*front, *back], span),
             MaterialDesc::Mask { opacity, .. } if surfaces::is(*opacity, 0.0) => {
                 begin(xml, "null");
@@ -353,6 +355,56 @@ impl Writer<'_> {
         ];
         rates(xml, &RATES, &p.rates);
         xml.end();
+    }
+
+    fn hair(&mut self, xml: &mut Xml, id: &str, hair: &HairDesc, span: &Span) {
+        if surfaces::turns(self.scene, hair, false) {
+            let message = "fibres of hair run across u in Mitsuba, where there are no curves";
+            self.notes.push("convert::hair", span, message, "on what is no curve they are turned by a right angle");
+        }
+        let beta_n = self.baker.average_number(hair.beta_n);
+        let absorption = match hair.absorption {
+            HairAbsorption::Pigments { eumelanin, pheomelanin } => HairAbsorption::Pigments {
+                eumelanin: self.of_hair(eumelanin, span),
+                pheomelanin: self.of_hair(pheomelanin, span),
+            },
+            HairAbsorption::Color(texture @ ColorInput::Texture(_))
+                if self.own("texture for the color of hair", span, "its mean is written") =>
+            {
+                HairAbsorption::Color(texture)
+            }
+            HairAbsorption::Color(color) => {
+                let sigma_a = absorption_of_color(self.baker.average(color), beta_n);
+                HairAbsorption::Coefficient(ColorInput::Constant(sigma_a))
+            }
+            coefficient => coefficient,
+        };
+        let roughness = [hair.beta_m, hair.beta_n].map(|beta| self.of_hair(beta, span));
+        xml.begin("bsdf", &[("type", "hair"), ("id", id)]);
+        match absorption {
+            HairAbsorption::Coefficient(sigma_a) => self.color(xml, "sigma_a", sigma_a),
+            HairAbsorption::Color(color) => self.color(xml, "color", color),
+            HairAbsorption::Pigments { eumelanin, pheomelanin } => {
+                self.number(xml, "eumelanin", eumelanin);
+                self.number(xml, "pheomelanin", pheomelanin);
+            }
+        }
+        index(xml, hair.eta);
+        self.number(xml, "longitudinal_roughness", roughness[0]);
+        self.number(xml, "azimuthal_roughness", roughness[1]);
+        xml.float("scale_tilt", hair.alpha.to_degrees());
+        xml.end();
+    }
+
+    /// A number of hair, which in Mitsuba cannot be a texture.
+    fn of_hair(&mut self, input: ScalarInput, span: &Span) -> ScalarInput {
+        let is_textured = matches!(input, ScalarInput::Texture(_));
+        if is_textured
+            && !self.own("texture for the roughness or pigments of hair", span, "its mean is written")
+        {
+            return ScalarInput::Constant(self.baker.average_number(input));
+        }
+        input
     }
 
     fn metallic_roughness(&mut self, xml: &mut Xml, id: &str, m: &MetallicRoughnessDesc) {

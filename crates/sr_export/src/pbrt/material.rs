@@ -2,7 +2,9 @@
 
 use sr_bsdf::interface::diffuse_reflectance as diffuse_reflectance_of;
 use sr_bsdf::{RoughPlasticTables, rough_internal_reflectance};
-use sr_scene::{ColorInput, MaterialDesc, MaterialId, MicrofacetKind, Rgb, ScalarInput, Span, TextureId};
+use sr_scene::{
+    ColorInput, HairAbsorption, MaterialDesc, MaterialId, MicrofacetKind, Rgb, ScalarInput, Span, TextureId,
+};
 
 use super::Writer;
 use super::text::Params;
@@ -252,6 +254,26 @@ impl Writer<'_> {
                     is_thin: m.thin,
                 };
                 return self.many(name, base, tilt, ("metallicroughness", span));
+            }
+            MaterialDesc::Hair(hair) => {
+                if surfaces::turns(self.scene, hair, true) {
+                    let message = "fibres of hair run along u in pbrt, where there are no curves";
+                    self.notes.push("convert::hair", span, message, "on what is no curve they are turned by a right angle");
+                }
+                let params = Params::default().float("eta", hair.eta).float("alpha", hair.alpha.to_degrees());
+                let params = match hair.absorption {
+                    HairAbsorption::Coefficient(sigma_a) => {
+                        self.color(params, "sigma_a", sigma_a, Use::Color)
+                    }
+                    HairAbsorption::Color(color) => self.color(params, "reflectance", color, Use::Color),
+                    HairAbsorption::Pigments { eumelanin, pheomelanin } => {
+                        let params = self.number(params, "eumelanin", eumelanin, Use::Number);
+                        self.number(params, "pheomelanin", pheomelanin, Use::Number)
+                    }
+                };
+                let params = self.number(params, "beta_m", hair.beta_m, Use::Number);
+                let params = self.number(params, "beta_n", hair.beta_n, Use::Number);
+                self.named(&name, "hair", params, tilt);
             }
             MaterialDesc::TwoSided { front, back } => {
                 if front != back {

@@ -55,7 +55,7 @@ const CLASSES: &[Class] = &[
             ("polarizer", ATTENUATES),
             ("circular", ATTENUATES),
             ("retarder", Near("all light passes: nothing is polarized")),
-            ("hair", STAND_IN),
+            ("hair", Done),
             ("measured", STAND_IN),
             ("measured_polarized", STAND_IN),
         ],

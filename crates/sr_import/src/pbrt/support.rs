@@ -75,7 +75,7 @@ pub const MATERIALS: &Known = &[
     ("mix", Done),
     ("interface", Done),
     ("measured", Reported("a diffuse one of reflectance 0.5 is shown instead")),
-    ("hair", Reported("a diffuse one of its \"color\" is shown instead")),
+    ("hair", Done),
     ("subsurface", Reported("a coated diffuse one of its \"reflectance\" (0.5 without) is shown instead")),
 ];
 

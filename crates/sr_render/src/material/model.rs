@@ -111,6 +111,7 @@ impl Materials {
             MaterialDesc::Principled(principled) => Uncommon::Principled(principled).into(),
             MaterialDesc::PrincipledThin(thin) => Uncommon::PrincipledThin(thin).into(),
             MaterialDesc::MetallicRoughness(m) => Uncommon::MetallicRoughness(m).into(),
+            MaterialDesc::Hair(hair) => Uncommon::Hair(hair).into(),
             MaterialDesc::TwoSided { .. }
             | MaterialDesc::Mask { .. }
             | MaterialDesc::Blend { .. }

@@ -1,11 +1,15 @@
 //! Models without a loop of their own: what each is made from, which may be many numbers, and how.
 
+use sr_bsdf::hair::{absorption_of_color, pigments};
 use sr_bsdf::{
-    AnyModel, CoatedConductor, CompensatedConductor, CompensatedDielectric, DiffuseTransmission, Eon,
-    MetallicRoughness, MetallicRoughnessInputs, OrenNayar, Principled, PrincipledInputs, PrincipledThin,
-    PrincipledThinInputs, Rgb,
+    AnyModel, CoatedConductor, CompensatedConductor, CompensatedDielectric, DiffuseTransmission, Eon, Hair,
+    HairInputs, MetallicRoughness, MetallicRoughnessInputs, OrenNayar, Principled, PrincipledInputs,
+    PrincipledThin, PrincipledThinInputs, Rgb,
 };
-use sr_scene::{ColorInput, MetallicRoughnessDesc, PrincipledDesc, PrincipledThinDesc, ScalarInput};
+use sr_scene::{
+    ColorInput, HairAbsorption, HairDesc, MetallicRoughnessDesc, PrincipledDesc, PrincipledThinDesc,
+    ScalarInput,
+};
 
 use super::parts::{ModelSource, Place};
 use super::tables::Tables;
@@ -46,6 +50,7 @@ pub(super) enum Uncommon {
     Principled(PrincipledDesc),
     PrincipledThin(PrincipledThinDesc),
     MetallicRoughness(MetallicRoughnessDesc),
+    Hair(HairDesc),
 }
 
 impl From<Uncommon> for ModelSource {
@@ -61,6 +66,7 @@ impl Uncommon {
             Uncommon::Principled(p) => p.anisotropic != ScalarInput::Constant(0.0),
             Uncommon::PrincipledThin(p) => p.anisotropic != ScalarInput::Constant(0.0),
             Uncommon::MetallicRoughness(m) => m.anisotropy != ScalarInput::Constant(0.0),
+            Uncommon::Hair(_) => true,
             _ => false,
         }
     }
@@ -124,6 +130,7 @@ impl Uncommon {
                 anisotropy_rotation: m.anisotropy_rotation,
             })
             .into(),
+            Uncommon::Hair(ref hair) => hair_at(hair, at).into(),
             Uncommon::PrincipledThin(ref p) => PrincipledThin::new(PrincipledThinInputs {
                 base_color: at.color(p.base_color),
                 roughness: at.scalar(p.roughness),
@@ -140,4 +147,17 @@ impl Uncommon {
             .into(),
         }
     }
+}
+
+fn hair_at(hair: &HairDesc, at: &Place) -> Hair {
+    let (beta_m, beta_n) = (at.scalar(hair.beta_m), at.scalar(hair.beta_n));
+    let sigma_a = match hair.absorption {
+        HairAbsorption::Coefficient(sigma_a) => at.color(sigma_a),
+        HairAbsorption::Color(color) => absorption_of_color(at.color(color), beta_n),
+        HairAbsorption::Pigments { eumelanin, pheomelanin } => {
+            pigments(at.scalar(eumelanin), at.scalar(pheomelanin))
+        }
+    };
+    let HairDesc { eta, alpha, along_u: along_x, .. } = *hair;
+    Hair::new(HairInputs { sigma_a, eta, beta_m, beta_n, alpha, along_x })
 }

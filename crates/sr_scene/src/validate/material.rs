@@ -65,6 +65,7 @@ impl Check<'_> {
                 | MaterialDesc::RoughDielectric { .. }
                 | MaterialDesc::DiffuseTransmission { .. }
                 | MaterialDesc::PrincipledThin(_)
+                | MaterialDesc::Hair(_)
                 | MaterialDesc::Mask { .. },
             ) => true,
             Some(MaterialDesc::MetallicRoughness(m)) => m.transmission != ScalarInput::Constant(0.0),
@@ -162,6 +163,7 @@ impl Check<'_> {
             MaterialDesc::Principled(principled) => self.principled(principled, span),
             MaterialDesc::PrincipledThin(thin) => self.principled_thin(thin, span),
             MaterialDesc::MetallicRoughness(m) => self.metallic_roughness(m, span),
+            MaterialDesc::Hair(hair) => self.hair(hair, span),
             MaterialDesc::TwoSided { .. } => {}
             MaterialDesc::Mask { opacity, .. } => self.share(opacity, "scene::opacity", "an opacity", span),
             MaterialDesc::Blend { weight, .. } => self.share(weight, "scene::blend-weight", "a weight", span),

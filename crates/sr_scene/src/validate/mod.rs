@@ -6,6 +6,7 @@
 mod camera;
 mod extent;
 mod film;
+mod hair;
 mod light;
 mod material;
 mod mesh_color;

@@ -107,6 +107,7 @@ impl<'a> Lowering<'a, '_> {
             "principled" => self.principled(props),
             "principledthin" => self.principled_thin(props),
             "metallicroughness" => self.metallic_roughness(props),
+            "hair" => self.hair(props),
             "twosided" => {
                 let nested = self.nested(props, "bsdf");
                 match nested[..] {

@@ -8,6 +8,7 @@ mod color;
 mod emitter;
 mod film;
 mod group;
+mod hair;
 mod material;
 mod polarization;
 mod principled;

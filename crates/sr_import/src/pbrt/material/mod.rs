@@ -1,6 +1,7 @@
 //! Materials.
 
 mod coat;
+mod hair;
 mod inputs;
 
 use sr_scene::{
@@ -142,6 +143,7 @@ impl Reader<'_> {
                 })
             }
             "diffusetransmission" => Made::Transmitting(self.diffuse_transmission(params)),
+            "hair" => Made::Transmitting(self.hair(params)),
             "mix" => self.mix(params),
             "interface" | "none" | "" => {
                 params.use_all();
@@ -281,11 +283,6 @@ impl Reader<'_> {
                 specular_reflectance: ColorInput::Constant(Rgb::ONE),
                 nonlinear: true,
             },
-            "hair" => {
-                // Its color, or the brown that pbrt takes without one.
-                let reflectance = self.albedo(params, "color", Rgb::new(0.22, 0.11, 0.05));
-                MaterialDesc::Diffuse { reflectance }
-            }
             _ => MaterialDesc::Diffuse { reflectance: self.albedo(params, "reflectance", GREY) },
         };
         params.use_all();
