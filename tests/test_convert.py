@@ -39,6 +39,7 @@ NOT_IN_PBRT = {
     "envmap-portal": "resampled",
     "eon": "approximated",
     "goniometric": "light",
+    "hair": "curves",
     "metallicroughness": "approximated",
     "multiscatter": "microfacets",
     "multiscatter-dielectric": "microfacets",

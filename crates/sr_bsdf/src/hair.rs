@@ -59,8 +59,8 @@ const DARKEST: f32 = 1e-6;
 /// Smoother than this is as rough as this: single precision knows no narrower lobes.
 const SMOOTHEST: f32 = 0.01;
 
-/// Directions this close to the surface are as far from it: f is then finite, and f cos is no more than it should be.
-const GRAZING: f32 = 1e-6;
+/// Directions closer to the surface than this are as far from it, so that f is finite.
+const GRAZING: f32 = 1e-25;
 
 /// How bright the primaries are.
 const LUMINANCE: Rgb = Rgb::new(0.212671, 0.715160, 0.072169);

@@ -8,7 +8,6 @@ pub(crate) fn models() -> Vec<(String, AnyBsdf<'static>)> {
     let fur = HairInputs { sigma_a: Rgb::new(0.1, 0.2, 0.4), beta_m: 0.25, beta_n: 0.9, ..brown };
     let inputs = [
         ("brown", brown),
-        ("along x", HairInputs { along_x: true, ..brown }),
         ("smooth", HairInputs { beta_m: 0.12, beta_n: 0.15, ..brown }),
         ("rough", HairInputs { beta_m: 1.0, beta_n: 1.0, ..brown }),
         ("fur", fur),

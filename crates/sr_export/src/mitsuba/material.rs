@@ -360,7 +360,12 @@ impl Writer<'_> {
     fn hair(&mut self, xml: &mut Xml, id: &str, hair: &HairDesc, span: &Span) {
         if surfaces::turns(self.scene, hair, false) {
             let message = "fibres of hair run across u in Mitsuba, where there are no curves";
-            self.notes.push("convert::hair", span, message, "on what is no curve they are turned by a right angle");
+            self.notes.push(
+                "convert::hair",
+                span,
+                message,
+                "on what is no curve they are turned by a right angle",
+            );
         }
         let beta_n = self.baker.average_number(hair.beta_n);
         let absorption = match hair.absorption {

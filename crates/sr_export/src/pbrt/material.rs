@@ -258,7 +258,12 @@ impl Writer<'_> {
             MaterialDesc::Hair(hair) => {
                 if surfaces::turns(self.scene, hair, true) {
                     let message = "fibres of hair run along u in pbrt, where there are no curves";
-                    self.notes.push("convert::hair", span, message, "on what is no curve they are turned by a right angle");
+                    self.notes.push(
+                        "convert::hair",
+                        span,
+                        message,
+                        "on what is no curve they are turned by a right angle",
+                    );
                 }
                 let params = Params::default().float("eta", hair.eta).float("alpha", hair.alpha.to_degrees());
                 let params = match hair.absorption {
