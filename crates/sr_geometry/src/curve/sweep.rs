@@ -37,6 +37,9 @@ struct Search {
 /// The smallest t in (0, `t_max`) at which the ray meets a part of the surface from outside, and where on the cubic.
 pub(super) fn meet(cubic: &Cubic, span: [f64; 2], ray: &Ray) -> Option<(f64, f64)> {
     let direction = ray.direction.as_dvec3();
+    if passes(cubic, span, ray.origin.as_dvec3(), direction) {
+        return None;
+    }
     let speed = direction.length();
     let z = direction / speed;
     let (x, y) = z.any_orthonormal_pair();
@@ -49,6 +52,21 @@ pub(super) fn meet(cubic: &Cubic, span: [f64; 2], ray: &Ray) -> Option<(f64, f64
     let (t, u) = search.best?;
     let t = t / speed;
     (t as f32 > 0.0 && (t as f32) < ray.t_max).then_some((t, u.clamp(span[0], span[1])))
+}
+
+/// Does the ray's line surely pass a part, by its distance to the line through the part's ends? Most rays do.
+fn passes(cubic: &Cubic, span: [f64; 2], origin: DVec3, direction: DVec3) -> bool {
+    let Cubic([a, b, c, d]) = cubic;
+    let [from, to] = span.map(|u| cubic.at(u).truncate());
+    let radius = a.w.max(b.w).max(c.w).max(d.w);
+    // A curve is off its chord by at most an eighth of its second derivative and its span squared.
+    let second =
+        (a - 2.0 * b + c).truncate().length_squared().max((b - 2.0 * c + d).truncate().length_squared());
+    let part = span[1] - span[0];
+    let reach = radius + 0.75 * part * part * second.sqrt();
+    let across = (to - from).cross(direction);
+    let distance = across.dot(from - origin);
+    distance * distance > reach * reach * across.length_squared()
 }
 
 impl Search {
