@@ -75,6 +75,8 @@ struct Reader<'d> {
     default_material: Option<MaterialId>,
     float_textures: HashMap<String, FloatTexture>,
     color_textures: HashMap<String, texture::ColorTexture>,
+    /// Triangles of parts of spheres, disks and cylinders so far.
+    swept_triangles: usize,
     /// Objects by name: their group.
     objects: HashMap<String, usize>,
     /// The object that is being described.
@@ -103,6 +105,7 @@ impl<'d> Reader<'d> {
             default_material: None,
             float_textures: HashMap::new(),
             color_textures: HashMap::new(),
+            swept_triangles: 0,
             objects: HashMap::new(),
             object: None,
             options: options::Options::default(),

@@ -58,9 +58,12 @@ pub const SHAPES: &Known = &[
     ("plymesh", Near("displacement is said and ignored; quadrilaterals are two triangles each")),
     ("bilinearmesh", Near("lights, and those with normals or uv, are triangles")),
     ("loopsubdiv", Done),
-    ("sphere", Near("partial ones are whole")),
-    ("disk", Near("partial ones are whole; u and v are swapped and mirrored")),
-    ("cylinder", Near("partial ones are whole")),
+    ("sphere", Near("parts of it, and stretched ones, are triangles")),
+    (
+        "disk",
+        Near("parts of it, and sheared ones, are triangles; u and v of others are swapped and mirrored"),
+    ),
+    ("cylinder", Near("parts of it, and stretched ones, are triangles")),
     ("curve", Near("flat ones and ribbons are round; v runs around")),
 ];
 

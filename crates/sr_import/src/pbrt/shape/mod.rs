@@ -1,12 +1,13 @@
 //! Shapes: form, material, light.
 //!
-//! - `quadric`: spheres, disks, cylinders. `mesh`: triangles, in the file or in others. `patch`: bilinear patches.
+//! - `quadric`: spheres, disks, cylinders; `swept`: parts of them. `mesh`: triangles, in the file or in others. `patch`: bilinear patches.
 //!   `curve`: curves.
 
 mod curve;
 mod mesh;
 mod patch;
 mod quadric;
+mod swept;
 
 use std::sync::Arc;
 
