@@ -34,10 +34,10 @@ impl fmt::Display for Support {
 pub const EXTENSIONS: &[(&str, Support)] = &[
     ("EXT_lights_image_based", Reported("the default light is used where there is no other")),
     ("EXT_mesh_gpu_instancing", Done),
-    ("EXT_meshopt_compression", Reported("what is packed in it alone cannot be read")),
+    ("EXT_meshopt_compression", Done),
     ("EXT_texture_webp", Done),
     ("KHR_animation_pointer", Reported("the scene is shown as it stands without animation")),
-    ("KHR_draco_mesh_compression", Reported("what is packed in it alone cannot be read")),
+    ("KHR_draco_mesh_compression", Done),
     (
         "KHR_lights_punctual",
         Approximated("spots fall off linearly by the angle; a range does not cut light off"),

@@ -73,21 +73,20 @@ impl Document<'_, '_> {
             self.warn("gltf::no-positions", &primitive.span, message, "it is left out");
             return None;
         };
-        if let Some(packed) = primitive.extension("KHR_draco_mesh_compression")
-            && self.item("accessors", position)?.get("bufferView").is_none()
-        {
-            // That it cannot be read is said for all meshes together.
-            self.packed = Some(packed.span.clone());
-            return None;
-        }
+        let packed = match self.unpack(primitive) {
+            Some(None) => return None,
+            packed => packed.flatten(),
+        };
+        let packed = packed.as_ref();
         let mut mesh = MeshDesc { name: name.to_owned(), ..MeshDesc::default() };
-        mesh.positions = self.rows(position, &[3])?.of(0.0).map(Vec3::from).collect();
+        mesh.positions =
+            self.attribute(packed, "POSITION", position, &[3])?.of(0.0).map(Vec3::from).collect();
         let count = mesh.positions.len();
         if let Some(normal) = attributes.get("NORMAL") {
-            mesh.normals = self.rows(normal, &[3])?.of(0.0).map(Vec3::from).collect();
+            mesh.normals = self.attribute(packed, "NORMAL", normal, &[3])?.of(0.0).map(Vec3::from).collect();
         }
         if let Some(color) = attributes.get("COLOR_0") {
-            let rows = self.rows(color, &[3, 4])?;
+            let rows = self.attribute(packed, "COLOR_0", color, &[3, 4])?;
             if rows.width == 4 && rows.iter().any(|row| row[3] != 1.0) {
                 let message = "the opacity of vertices is not shown";
                 self.warn_once("gltf::vertex-opacity", &color.span, message, "their colors are");
@@ -95,14 +94,23 @@ impl Document<'_, '_> {
             mesh.vertex_colors = rows.of(1.0).map(|c| Vec3::from_array(c).max(Vec3::ZERO)).collect();
         }
         let surface = self.surface(primitive.get("material"), !mesh.vertex_colors.is_empty());
-        if let Some(uv) = attributes.get(&format!("TEXCOORD_{}", surface.set)) {
-            mesh.uvs = self.rows(uv, &[2])?.of(0.0).map(|[u, v]| Vec2::new(u, 1.0 - v)).collect();
+        let name = format!("TEXCOORD_{}", surface.set);
+        if let Some(uv) = attributes.get(&name) {
+            mesh.uvs = self
+                .attribute(packed, &name, uv, &[2])?
+                .of(0.0)
+                .map(|[u, v]| Vec2::new(u, 1.0 - v))
+                .collect();
         }
         if let Some(targets) = primitive.get("targets") {
             self.morph(targets.list(), weights, &mut mesh);
         }
         if let Some(joints) = joints {
-            self.skin(attributes, joints, &mut mesh);
+            self.skin(attributes, packed, joints, &mut mesh);
+        }
+        if let Some(packed) = packed {
+            mesh.triangles = packed.triangles.clone();
+            return Some(Part { mesh: Arc::new(mesh), surface, span: primitive.span.clone() });
         }
         let corners = match primitive.get("indices") {
             Some(indices) => self.indices(indices)?,

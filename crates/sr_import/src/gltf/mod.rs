@@ -2,7 +2,7 @@
 //!
 //! - `json`, `container`: a file to values with places, and bytes. Decide no meaning.
 //! - `document`: indices followed, values of the wrong kind said, buffers read once.
-//! - `accessor`: numbers out of buffers. `geometry`: a primitive's triangles; `morph`, `skin`: as they stand at time 0.
+//! - `accessor`: numbers out of buffers. `draco`, `meshopt`: the same out of packed streams. `geometry`: a primitive's triangles; `morph`, `skin`: as they stand at time 0.
 //! - `image`, `texture`, `material`: what surfaces look like. `camera`, `light`, `node`: where everything stands.
 //! - `extensions`: which of them are done, and what is said about the others. `properties`: those that glTF does not know.
 
@@ -10,12 +10,14 @@ mod accessor;
 mod camera;
 mod container;
 mod document;
+mod draco;
 pub mod extensions;
 mod geometry;
 mod image;
 mod json;
 mod light;
 mod material;
+mod meshopt;
 mod morph;
 mod node;
 mod properties;
@@ -63,11 +65,6 @@ pub fn load(
     extensions::report(&root, document.out.d);
     properties::report(&root, document.out.d);
     document.scene();
-    if let (0, Some(packed)) = (document.shapes, document.packed.clone()) {
-        let message = "all meshes are packed by KHR_draco_mesh_compression; save the file without it \
-                       (`gltf-transform copy` unpacks it)";
-        document.error("gltf::compressed", &packed, message);
-    }
     document.out.view_from = crate::assembly::FRONT_ABOVE;
     // Surfaces that glow no brighter than white are labels and lamps' covers, made to be seen under a sky.
     let strong = document.strong_emission;
