@@ -392,6 +392,11 @@ fn others() -> Vec<(&'static str, &'static str, SceneDesc)> {
             "mesh_attribute",
             with_texture(TextureDesc::MeshColor { of: MeshColorOf::Vertices, scale: 1.0, span: span() }),
         ),
+        (
+            "texture",
+            "bitmap, further coordinates",
+            with_texture(TextureDesc::OtherUvs { input: id, set: 1, span: span() }),
+        ),
         ("shape", "meshes", scene()),
         (
             "shape",

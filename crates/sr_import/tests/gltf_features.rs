@@ -3,11 +3,11 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use sr_import::{LoadOptions, load_str};
 use sr_scene::{
     ColorInput, Diagnostics, Geometry, MaterialDesc, MeshDesc, MetallicRoughnessDesc, Pixels, Rgb,
-    ScalarInput, SceneDesc,
+    ScalarInput, SceneDesc, TextureDesc,
 };
 
 fn read(json: &str) -> (Option<SceneDesc>, Diagnostics) {
@@ -133,10 +133,12 @@ fn covered(material: &str) -> (SceneDesc, Diagnostics) {
     let image =
         uri(b"P7\nWIDTH 1\nHEIGHT 1\nDEPTH 4\nMAXVAL 255\nTUPLTYPE RGB_ALPHA\nENDHDR\n\x33\x66\xff\x80");
     let rest = format!(
-        r#""meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}, "material": 0}}]}}], "nodes": [{{"mesh": 0}}],
+        r#""meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0, "TEXCOORD_0": 1}}, "material": 0}}]}}], "nodes": [{{"mesh": 0}}],
         "images": [{{"uri": "{image}"}}], "textures": [{{"source": 0}}], "materials": [{material}]"#
     );
-    let (scene, diagnostics) = read(&file(&[], "", &rest));
+    let coordinates = floats(&[0., 0., 1., 0., 0., 1.]);
+    let accessors = r#", {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC2"}"#;
+    let (scene, diagnostics) = read(&file(&[coordinates], accessors, &rest));
     let scene = scene.unwrap_or_else(|| panic!("{}", diagnostics.render(false)));
     (scene, diagnostics)
 }
@@ -147,6 +149,55 @@ fn metallic_roughness(scene: &SceneDesc) -> MetallicRoughnessDesc {
         _ => None,
     });
     found.expect("a metallic-roughness material")
+}
+
+#[test]
+fn textures_take_the_coordinates_that_they_name() {
+    let (first, second) = (floats(&[0., 0., 1., 0., 0., 1.]), floats(&[0.5, 0.25, 0.5, 0.5, 0.75, 1.0]));
+    let accessors = r#", {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC2"},
+        {"bufferView": 2, "componentType": 5126, "count": 3, "type": "VEC2"}"#;
+    let image =
+        uri(b"P7\nWIDTH 1\nHEIGHT 1\nDEPTH 4\nMAXVAL 255\nTUPLTYPE RGB_ALPHA\nENDHDR\n\x33\x66\xff\x80");
+    let with = |attributes: &str, material: &str| {
+        let rest = format!(
+            r#""meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0, {attributes}}}, "material": 0}}]}}],
+            "nodes": [{{"mesh": 0}}], "images": [{{"uri": "{image}"}}], "textures": [{{"source": 0}}],
+            "materials": [{material}]"#
+        );
+        let (scene, diagnostics) = read(&file(&[first.clone(), second.clone()], accessors, &rest));
+        (scene.unwrap_or_else(|| panic!("{}", diagnostics.render(false))), diagnostics)
+    };
+    let both = r#""TEXCOORD_0": 1, "TEXCOORD_1": 2"#;
+    let (scene, diagnostics) = with(
+        both,
+        r#"{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}},
+        "emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": 0, "texCoord": 1}}"#,
+    );
+    assert_eq!(codes(&diagnostics), USUAL, "{}", diagnostics.render(false));
+    let upright = |uvs: &[f32]| -> Vec<Vec2> { uvs.chunks(2).map(|c| Vec2::new(c[0], 1.0 - c[1])).collect() };
+    let (first, second) = (upright(&[0., 0., 1., 0., 0., 1.]), upright(&[0.5, 0.25, 0.5, 0.5, 0.75, 1.0]));
+    assert_eq!(mesh(&scene).uvs, first);
+    assert_eq!(mesh(&scene).further_uvs, [second.clone()]);
+    let ColorInput::Texture(emitted) = scene.shapes[0].emission.unwrap().radiance else { panic!() };
+    assert!(matches!(scene.textures[emitted.0 as usize], TextureDesc::OtherUvs { set: 1, .. }));
+    let ColorInput::Texture(base) = metallic_roughness(&scene).base_color else { panic!() };
+    assert!(matches!(scene.textures[base.0 as usize], TextureDesc::Bitmap { .. }));
+    // Tangents follow the coordinates of the normals, which become the first; a transform may name another set.
+    let (scene, diagnostics) = with(
+        both,
+        r#"{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}, "normalTexture": {"index": 0, "texCoord": 0,
+        "extensions": {"KHR_texture_transform": {"texCoord": 1}}}}"#,
+    );
+    assert_eq!(codes(&diagnostics), USUAL, "{}", diagnostics.render(false));
+    assert_eq!((&mesh(&scene).uvs, &mesh(&scene).further_uvs[..]), (&second, &[first][..]));
+    let ColorInput::Texture(base) = metallic_roughness(&scene).base_color else { panic!() };
+    assert!(matches!(scene.textures[base.0 as usize], TextureDesc::OtherUvs { set: 1, .. }));
+    // One set only, which need not be the first.
+    let base = r#"{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0, "texCoord": 1}}}"#;
+    let (scene, _) = with(both, base);
+    assert_eq!((&mesh(&scene).uvs, mesh(&scene).further_uvs.len()), (&second, 0));
+    let (_, diagnostics) = with(r#""TEXCOORD_0": 1"#, base);
+    assert!(codes(&diagnostics).contains(&"gltf::no-coordinates"));
 }
 
 #[test]

@@ -126,6 +126,7 @@ impl TextureDesc {
         match *self {
             Self::Bitmap { .. } | Self::MeshColor { .. } => Vec::new(),
             Self::Checkerboard { color0, color1, .. } => given([color0.into(), color1.into()]),
+            Self::OtherUvs { input, .. } => given([input.into()]),
             Self::Scale { input, factor, .. } => given([input.into(), factor.into()]),
             Self::Mix { color0, color1, weight, .. } => given([color0.into(), color1.into(), weight.into()]),
         }

@@ -29,7 +29,7 @@ pub use material::{
     ScalarInput, Tilting,
 };
 pub use profile::IntensityProfile;
-pub use shape::{Emission, Geometry, GroupDesc, InstanceDesc, MeshDesc, ShapeDesc};
+pub use shape::{Emission, Geometry, GroupDesc, InstanceDesc, MAX_UV_SETS, MeshDesc, ShapeDesc};
 pub use texture::{Filter, MeshColorOf, TextureDesc, Wrap};
 pub use validate::{MAX_FILM_PIXELS, validate};
 

@@ -3,11 +3,13 @@
 use std::sync::Arc;
 
 use glam::{DMat4, Vec2, Vec3};
-use sr_scene::{MeshDesc, Span};
+use sr_scene::{MAX_UV_SETS, MeshDesc, Span};
 
 use super::document::Document;
+use super::draco::Unpacked;
 use super::json::Value;
 use super::material::Surface;
+use super::texture::Sets;
 
 /// Mesh, primitive, and the node if it bends the mesh.
 pub type Key = (usize, usize, Option<usize>);
@@ -94,14 +96,10 @@ impl Document<'_, '_> {
             mesh.vertex_colors = rows.of(1.0).map(|c| Vec3::from_array(c).max(Vec3::ZERO)).collect();
         }
         let surface = self.surface(primitive.get("material"), !mesh.vertex_colors.is_empty());
-        let name = format!("TEXCOORD_{}", surface.set);
-        if let Some(uv) = attributes.get(&name) {
-            mesh.uvs = self
-                .attribute(packed, &name, uv, &[2])?
-                .of(0.0)
-                .map(|[u, v]| Vec2::new(u, 1.0 - v))
-                .collect();
-        }
+        let uvs = self.uvs(primitive, attributes, packed, &surface.sets)?;
+        let mut uvs = uvs.into_iter();
+        mesh.uvs = uvs.next().unwrap_or_default();
+        mesh.further_uvs = uvs.collect();
         if let Some(targets) = primitive.get("targets") {
             self.morph(targets.list(), weights, &mut mesh);
         }
@@ -122,6 +120,32 @@ impl Document<'_, '_> {
             _ => corners.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
         };
         Some(Part { mesh: Arc::new(mesh), surface, span: primitive.span.clone() })
+    }
+
+    /// The sets of texture coordinates that a material takes; empty where the primitive does not have them.
+    fn uvs(
+        &mut self,
+        primitive: &Value,
+        attributes: &Value,
+        packed: Option<&Unpacked>,
+        sets: &Sets,
+    ) -> Option<Vec<Vec<Vec2>>> {
+        let mut all = Vec::new();
+        for (at, set) in sets.used.iter().take(MAX_UV_SETS as usize).enumerate() {
+            let name = format!("TEXCOORD_{set}");
+            let Some(uv) = attributes.get(&name) else {
+                if sets.any {
+                    let message = format!("the primitive has no {name}, which its textures take");
+                    let instead = if at == 0 { "each triangle has its own" } else { "another set is used" };
+                    self.warn("gltf::no-coordinates", &primitive.span, message, instead);
+                }
+                all.push(Vec::new());
+                continue;
+            };
+            let rows = self.attribute(packed, &name, uv, &[2])?;
+            all.push(rows.of(0.0).map(|[u, v]| Vec2::new(u, 1.0 - v)).collect());
+        }
+        Some(all)
     }
 }
 

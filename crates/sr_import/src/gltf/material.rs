@@ -1,7 +1,5 @@
 //! Materials: the metallic-roughness model with its extensions, what covers it, and what it emits.
 
-use std::collections::HashSet;
-
 use sr_scene::{
     ColorInput, Emission, MaterialDesc, MaterialId, MeshColorOf, MetallicRoughnessDesc, Rgb, ScalarInput,
     Span, TextureDesc, Tilting,
@@ -16,12 +14,12 @@ use super::texture::{Sets, rgb};
 pub type Key = (Option<usize>, bool);
 
 /// What a primitive is covered with.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub struct Surface {
     pub material: MaterialId,
     pub emission: Option<Emission>,
-    /// The set of texture coordinates that its textures take.
-    pub set: usize,
+    /// The sets of texture coordinates that its textures take.
+    pub sets: Sets,
 }
 
 /// What an object of the file says about the base of its surface.
@@ -38,19 +36,19 @@ impl Document<'_, '_> {
     /// The surface of a primitive.
     pub fn surface(&mut self, material: Option<&Value>, has_colors: bool) -> Surface {
         let key = (material.and_then(Value::index), has_colors);
-        if let Some(&known) = self.materials.get(&key) {
-            return known;
+        if let Some(known) = self.materials.get(&key) {
+            return known.clone();
         }
         let found = material.and_then(|index| self.item("materials", index));
         let nothing = Value { kind: super::json::Kind::Null, span: Span::default() };
         let surface = self.make_surface(found.unwrap_or(&nothing), has_colors);
-        self.materials.insert(key, surface);
+        self.materials.insert(key, surface.clone());
         surface
     }
 
     fn make_surface(&mut self, material: &Value, has_colors: bool) -> Surface {
         let span = &material.span;
-        let mut sets = Sets::new();
+        let mut sets = Sets::of(material);
         let old = material.extension("KHR_materials_pbrSpecularGlossiness");
         let (base, desc) = match old {
             Some(old) => self.specular_glossiness(old, has_colors, &mut sets),
@@ -85,16 +83,7 @@ impl Document<'_, '_> {
         if let Some(opacity) = self.opacity(material, &base, &mut sets) {
             id = self.out.add_material(MaterialDesc::Mask { opacity, inner: id }, span);
         }
-        let set = sets.first().map_or(0, |(set, _)| *set);
-        let mut others = HashSet::new();
-        for (other, place) in sets.iter().filter(|(other, _)| *other != set) {
-            if others.insert(*other) {
-                let message =
-                    format!("the material's textures take the sets {set} and {other} of coordinates");
-                self.warn("gltf::texture-sets", place, message, &format!("all take set {set}"));
-            }
-        }
-        Surface { material: id, emission: emission.map(|radiance| Emission { radiance }), set }
+        Surface { material: id, emission: emission.map(|radiance| Emission { radiance }), sets }
     }
 
     fn metallic_roughness(
