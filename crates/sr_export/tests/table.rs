@@ -75,6 +75,7 @@ fn scene() -> SceneDesc {
         groups: Vec::new(),
         instances: Vec::new(),
         lights: Vec::new(),
+        variants: Vec::new(),
     }
 }
 

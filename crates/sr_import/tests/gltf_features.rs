@@ -177,7 +177,7 @@ fn textures_take_the_coordinates_that_they_name() {
     let upright = |uvs: &[f32]| -> Vec<Vec2> { uvs.chunks(2).map(|c| Vec2::new(c[0], 1.0 - c[1])).collect() };
     let (first, second) = (upright(&[0., 0., 1., 0., 0., 1.]), upright(&[0.5, 0.25, 0.5, 0.5, 0.75, 1.0]));
     assert_eq!(mesh(&scene).uvs, first);
-    assert_eq!(mesh(&scene).further_uvs, [second.clone()]);
+    assert_eq!(mesh(&scene).further_uvs[..], *std::slice::from_ref(&second));
     let ColorInput::Texture(emitted) = scene.shapes[0].emission.unwrap().radiance else { panic!() };
     assert!(matches!(scene.textures[emitted.0 as usize], TextureDesc::OtherUvs { set: 1, .. }));
     let ColorInput::Texture(base) = metallic_roughness(&scene).base_color else { panic!() };
@@ -198,6 +198,43 @@ fn textures_take_the_coordinates_that_they_name() {
     assert_eq!((&mesh(&scene).uvs, mesh(&scene).further_uvs.len()), (&second, 0));
     let (_, diagnostics) = with(r#""TEXCOORD_0": 1"#, base);
     assert!(codes(&diagnostics).contains(&"gltf::no-coordinates"));
+}
+
+#[test]
+fn variants_choose_materials() {
+    let rest = |second: &str| {
+        format!(
+            r#""meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}, "material": 0, "extensions":
+            {{"KHR_materials_variants": {{"mappings": [{{"material": 1, "variants": [0, 2]}}]}}}}}}]}}],
+            "nodes": [{{"mesh": 0}}], "materials": [{{"pbrMetallicRoughness": {{"baseColorFactor": [1, 0, 0, 1]}}}},
+            {{"pbrMetallicRoughness": {{"baseColorFactor": [0, 0, 1, 1]}}}}], "extensions": {{"KHR_materials_variants":
+            {{"variants": [{{"name": "blue"}}, {{"name": "{second}"}}, {{"name": "also blue"}}]}}}}"#
+        )
+    };
+    let with = |variant: Option<&str>| {
+        let options = LoadOptions { variant: variant.map(str::to_owned), ..LoadOptions::default() };
+        load_str("test.gltf", &file(&[], "", &rest("red")), Path::new(""), &options)
+    };
+    let (red, blue) = (Rgb::X, Rgb::Z);
+    for (variant, color) in [(None, red), (Some("blue"), blue), (Some("red"), red), (Some("also blue"), blue)]
+    {
+        let (scene, diagnostics) = with(variant);
+        assert_eq!(codes(&diagnostics), USUAL, "{}", diagnostics.render(false));
+        let scene = scene.unwrap();
+        assert_eq!(metallic_roughness(&scene).base_color, ColorInput::Constant(color), "{variant:?}");
+        assert_eq!(scene.variants, ["blue", "red", "also blue"]);
+    }
+    let (scene, diagnostics) = with(Some("bleu"));
+    assert!(scene.is_none());
+    let error = &diagnostics.list[0];
+    assert_eq!(error.code, "scene::unknown-variant");
+    let message = "no variant is called \"bleu\": there are \"blue\", \"red\", \"also blue\"";
+    assert_eq!(error.message, message);
+    assert_eq!(error.hint.as_deref(), Some("did you mean \"blue\"?"));
+    let options = LoadOptions { variant: Some("blue".into()), ..LoadOptions::default() };
+    let (scene, diagnostics) = load_str("a.xml", "<scene version=\"3.0.0\"/>", Path::new(""), &options);
+    assert!(scene.is_none());
+    assert!(diagnostics.list.iter().any(|d| d.message.ends_with("the scene has no variants")));
 }
 
 #[test]

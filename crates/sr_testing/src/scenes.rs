@@ -69,6 +69,7 @@ pub fn diffuse_scene(camera: CameraDesc, albedo: f32) -> SceneDesc {
         groups: Vec::new(),
         instances: Vec::new(),
         lights: Vec::new(),
+        variants: Vec::new(),
     }
 }
 

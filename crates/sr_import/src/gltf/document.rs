@@ -26,6 +26,8 @@ pub struct Document<'v, 'd> {
     pub images: image::Images,
     pub materials: HashMap<material::Key, material::Surface>,
     pub meshes: HashMap<geometry::Key, Option<geometry::Part>>,
+    /// Which of the variants of the materials is shown.
+    pub variant: Option<usize>,
     /// Does a surface emit more than white does, by KHR_materials_emissive_strength?
     pub strong_emission: bool,
     /// Codes and places of what was said already.
@@ -44,6 +46,7 @@ impl<'v, 'd> Document<'v, 'd> {
             images: image::Images::default(),
             materials: HashMap::new(),
             meshes: HashMap::new(),
+            variant: None,
             strong_emission: false,
             said: HashSet::new(),
         }

@@ -54,7 +54,7 @@ pub const EXTENSIONS: &[(&str, Support)] = &[
     ("KHR_materials_specular", Done),
     ("KHR_materials_transmission", Done),
     ("KHR_materials_unlit", Approximated("as an emitter that reflects nothing")),
-    ("KHR_materials_variants", Reported("the variant that is set by default is shown")),
+    ("KHR_materials_variants", Done),
     ("KHR_materials_volume", Approximated("attenuation colors the surface, by the stated thickness")),
     ("KHR_mesh_quantization", Done),
     ("KHR_texture_basisu", Reported("the other image of the texture is used, if there is one")),

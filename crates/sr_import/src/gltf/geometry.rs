@@ -95,7 +95,7 @@ impl Document<'_, '_> {
             }
             mesh.vertex_colors = rows.of(1.0).map(|c| Vec3::from_array(c).max(Vec3::ZERO)).collect();
         }
-        let surface = self.surface(primitive.get("material"), !mesh.vertex_colors.is_empty());
+        let surface = self.surface(self.material_of(primitive), !mesh.vertex_colors.is_empty());
         let uvs = self.uvs(primitive, attributes, packed, &surface.sets)?;
         let mut uvs = uvs.into_iter();
         mesh.uvs = uvs.next().unwrap_or_default();
