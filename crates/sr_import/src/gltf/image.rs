@@ -136,10 +136,11 @@ impl Document<'_, '_> {
     }
 }
 
-/// The image that a texture shows: one that is read before one that is not.
+/// The image that a texture shows: that of an extension before that for those who do not know it.
 pub fn source(texture: &Value) -> Option<&Value> {
-    let webp = texture.extension("EXT_texture_webp").and_then(|webp| webp.get("source"));
-    webp.or_else(|| texture.get("source"))
+    let packed = ["EXT_texture_webp", "KHR_texture_basisu"];
+    let packed = packed.into_iter().find_map(|name| texture.extension(name)?.get("source"));
+    packed.or_else(|| texture.get("source"))
 }
 
 fn channels(image: &Image) -> usize {
