@@ -8,7 +8,8 @@ use sr_scene::{
     CameraDesc, ColorInput, Emission, FilmDesc, Filter, FilterDesc, FovAxis, Geometry, Image,
     IntensityProfile, Lens, LightDesc, MaterialDesc, MaterialId, MeshColorOf, MeshDesc,
     MetallicRoughnessDesc, MicrofacetKind, Pixels, PrincipledDesc, PrincipledThinDesc, Projection, Rgb,
-    ScalarInput, SceneDesc, Settings, ShapeDesc, Span, SphereMapping, TextureDesc, TextureId, Tilting, Wrap,
+    ScalarInput, SceneDesc, Settings, ShapeDesc, Span, SphereMapping, SpotFalloff, TextureDesc, TextureId,
+    Tilting, Wrap,
 };
 
 const GREY: ColorInput = ColorInput::Constant(Rgb::splat(0.5));
@@ -332,9 +333,15 @@ fn others() -> Vec<(&'static str, &'static str, SceneDesc)> {
         intensity: Rgb::ONE,
         cutoff_angle: 0.5,
         beam_width,
+        falloff: SpotFalloff::Linear,
+        range: f32::INFINITY,
         texture,
         span: span(),
     };
+    let mut cosine_spot = with_light(spot(None, 0.4));
+    if let LightDesc::Spot { falloff, .. } = &mut cosine_spot.lights[0] {
+        *falloff = SpotFalloff::SquaredCosine;
+    }
     let mut textured_spot = with_light(spot(Some(TextureId(0)), 0.4));
     textured_spot.textures.push(bitmap(to_uv, Wrap::Clamp));
     let profile = Arc::new(IntensityProfile {
@@ -433,7 +440,22 @@ fn others() -> Vec<(&'static str, &'static str, SceneDesc)> {
         (
             "light",
             "point",
-            with_light(LightDesc::Point { position: Vec3::ZERO, intensity: Rgb::ONE, span: span() }),
+            with_light(LightDesc::Point {
+                position: Vec3::ZERO,
+                intensity: Rgb::ONE,
+                range: f32::INFINITY,
+                span: span(),
+            }),
+        ),
+        (
+            "light",
+            "point, range",
+            with_light(LightDesc::Point {
+                position: Vec3::ZERO,
+                intensity: Rgb::ONE,
+                range: 10.0,
+                span: span(),
+            }),
         ),
         (
             "light",
@@ -441,6 +463,7 @@ fn others() -> Vec<(&'static str, &'static str, SceneDesc)> {
             with_light(LightDesc::Directional { direction: Vec3::Z, irradiance: Rgb::ONE, span: span() }),
         ),
         ("light", "spot", with_light(spot(None, 0.4))),
+        ("light", "spot, squared cosine", cosine_spot),
         ("light", "spot, textured", textured_spot),
         (
             "light",

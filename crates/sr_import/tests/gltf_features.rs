@@ -6,7 +6,7 @@ use std::path::Path;
 use glam::{Vec2, Vec3};
 use sr_import::{LoadOptions, load_str};
 use sr_scene::{
-    ColorInput, Diagnostics, Geometry, MaterialDesc, MeshDesc, MetallicRoughnessDesc, Pixels, Rgb,
+    ColorInput, Diagnostics, Geometry, LightDesc, MaterialDesc, MeshDesc, MetallicRoughnessDesc, Pixels, Rgb,
     ScalarInput, SceneDesc, TextureDesc,
 };
 
@@ -235,6 +235,46 @@ fn variants_choose_materials() {
     let (scene, diagnostics) = load_str("a.xml", "<scene version=\"3.0.0\"/>", Path::new(""), &options);
     assert!(scene.is_none());
     assert!(diagnostics.list.iter().any(|d| d.message.ends_with("the scene has no variants")));
+}
+
+#[test]
+fn light_around_a_scene() {
+    // Sides of one texel, sRGB 188, which is half: red, green and so on; the last is four times as bright, by its opacity.
+    let side = |r: u8, g: u8, b: u8, a: u8| {
+        let mut bytes = b"P7\nWIDTH 1\nHEIGHT 1\nDEPTH 4\nMAXVAL 255\nTUPLTYPE RGB_ALPHA\nENDHDR\n".to_vec();
+        bytes.extend([r, g, b, a]);
+        format!(r#"{{"uri": "{}"}}"#, uri(&bytes))
+    };
+    let sides = [side(255, 0, 0, 255), side(0, 255, 0, 255), side(0, 0, 255, 255)];
+    let sides =
+        [&sides[..], &[side(255, 255, 0, 255), side(0, 255, 255, 255), side(255, 255, 255, 64)]].concat();
+    let json = |faces: &str| {
+        let rest = format!(
+            r#""meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}}}]}}], "nodes": [{{"mesh": 0}}],
+            "images": [{}], "scenes": [{{"nodes": [0], "extensions": {{"EXT_lights_image_based": {{"light": 0}}}}}}],
+            "extensions": {{"EXT_lights_image_based": {{"lights": [{{"intensity": 2, "rotation": [0, 1, 0, 0],
+            "specularImageSize": 1, "specularImages": [{faces}]}}]}}}}"#,
+            sides.join(",")
+        );
+        file(&[], "", &rest)
+    };
+    let (scene, diagnostics) = read(&json("[0, 1, 2, 3, 4, 5]"));
+    assert_eq!(codes(&diagnostics), ["scene::no-camera"], "{}", diagnostics.render(false));
+    let scene = scene.unwrap();
+    let LightDesc::Environment { image, scale: 2.0, world_from_light, .. } = &scene.lights[0] else {
+        panic!()
+    };
+    assert!((*world_from_light * Vec3::X).distance(Vec3::NEG_X) < 1e-6);
+    let image = &scene.images[*image as usize];
+    let Pixels::F32 { data, .. } = &image.pixels else { panic!() };
+    // Latitude and longitude: rows up and down; columns between -Z and +X, +X and +Z, and so on.
+    assert_eq!((image.width, image.height), (4, 2));
+    assert_eq!((&data[..3], &data[12..15]), (&[0.0, 0.0, 1.0][..], &[1.0, 1.0, 0.0][..]));
+    let (scene, diagnostics) = read(&json("[0, 1, 2]"));
+    assert!(scene.is_some());
+    assert!(codes(&diagnostics).contains(&"gltf::image-based-light"));
+    let (scene, _) = read(&json("[0, 1, 2, 3, 4, 9]"));
+    assert!(scene.is_none());
 }
 
 #[test]

@@ -23,7 +23,7 @@ pub use desc::{MaterialId, SceneDesc, Settings, TextureId};
 pub use diagnostic::{Diagnostic, Diagnostics, Severity, SourceId, Sources, Span};
 pub use film::{Crop, FilmDesc, FilmWindow, FilterDesc};
 pub use image::{Image, Pixels};
-pub use light::{LightDesc, MAX_PORTALS, Portal, SphereMapping};
+pub use light::{LightDesc, MAX_PORTALS, Portal, SphereMapping, SpotFalloff};
 pub use material::{
     ColorInput, MaterialDesc, MetallicRoughnessDesc, MicrofacetKind, PrincipledDesc, PrincipledThinDesc,
     ScalarInput, Tilting,

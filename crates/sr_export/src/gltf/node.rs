@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::{Mat4, Quat, Vec3};
-use sr_scene::{LightDesc, MeshDesc, Projection, Rgb, ShapeDesc, Span, TextureDesc};
+use sr_scene::{LightDesc, MeshDesc, Projection, Rgb, ShapeDesc, Span, SpotFalloff, TextureDesc};
 
 use super::json::Json;
 use super::{Attributes, Writer, emission_key};
@@ -88,8 +88,8 @@ impl Writer<'_> {
                 lost(self, "light around the scene", span);
             }
             LightDesc::Sky { span, .. } => lost(self, "sky", span),
-            LightDesc::Point { position, intensity, .. } => {
-                self.punctual("point", *intensity, Vec::new(), (Quat::IDENTITY, *position));
+            LightDesc::Point { position, intensity, range, .. } => {
+                self.punctual("point", *intensity, ranged(*range), (Quat::IDENTITY, *position));
             }
             LightDesc::Directional { direction, irradiance, .. } => {
                 self.punctual("directional", *irradiance, Vec::new(), (along(*direction), Vec3::ZERO));
@@ -104,7 +104,20 @@ impl Writer<'_> {
                 let irradiance = probe.radiance(towards) * solid_angle;
                 self.punctual("directional", irradiance, Vec::new(), (along(-towards), Vec3::ZERO));
             }
-            LightDesc::Spot { world_from_light, intensity, cutoff_angle, beam_width, texture, span } => {
+            LightDesc::Spot {
+                world_from_light,
+                intensity,
+                cutoff_angle,
+                beam_width,
+                falloff,
+                range,
+                texture,
+                span,
+            } => {
+                if *falloff == SpotFalloff::Linear && beam_width < cutoff_angle {
+                    let message = "glTF's spot lights fall off by the square of a cosine";
+                    self.notes.push("convert::light", span, message, "it does so within the same angles");
+                }
                 if texture.is_some() {
                     let message = "glTF's spot lights have no texture";
                     self.notes.push("convert::light", span, message, "it is evenly bright");
@@ -123,7 +136,8 @@ impl Writer<'_> {
                 ]);
                 let axis = world_from_light.transform_vector3(Vec3::Z).normalize_or(Vec3::Z);
                 let place = world_from_light.w_axis.truncate();
-                self.punctual("spot", *intensity, vec![("spot", spot)], (along(axis), place));
+                let members = ranged(*range).into_iter().chain([("spot", spot)]).collect();
+                self.punctual("spot", *intensity, members, (along(axis), place));
             }
             LightDesc::Projector { world_from_light, span, .. }
             | LightDesc::Goniometric { world_from_light, span, .. }
@@ -280,6 +294,11 @@ impl Writer<'_> {
         self.made.push(mesh.clone());
         known
     }
+}
+
+/// How far a light shines, if not for ever.
+fn ranged(range: f32) -> Vec<(&'static str, Json)> {
+    if range.is_finite() { vec![("range", Json::Number(range))] } else { Vec::new() }
 }
 
 /// A rotation of −Z to a direction.

@@ -32,16 +32,13 @@ impl fmt::Display for Support {
 
 /// Every extension that this crate has heard of.
 pub const EXTENSIONS: &[(&str, Support)] = &[
-    ("EXT_lights_image_based", Reported("the default light is used where there is no other")),
+    ("EXT_lights_image_based", Done),
     ("EXT_mesh_gpu_instancing", Done),
     ("EXT_meshopt_compression", Done),
     ("EXT_texture_webp", Done),
     ("KHR_animation_pointer", Reported("the scene is shown as it stands without animation")),
     ("KHR_draco_mesh_compression", Done),
-    (
-        "KHR_lights_punctual",
-        Approximated("spots fall off linearly by the angle; a range does not cut light off"),
-    ),
+    ("KHR_lights_punctual", Done),
     ("KHR_materials_anisotropy", Approximated("one direction for a whole texture, its mean")),
     ("KHR_materials_clearcoat", Approximated("the coat has the normals of the base")),
     ("KHR_materials_diffuse_transmission", Reported("the surface is opaque")),

@@ -3,7 +3,7 @@
 //! - `json`, `container`: a file to values with places, and bytes. Decide no meaning.
 //! - `document`: indices followed, values of the wrong kind said, buffers read once.
 //! - `accessor`: numbers out of buffers. `draco`, `meshopt`: the same out of packed streams. `geometry`: a primitive's triangles; `morph`, `skin`: as they stand at time 0.
-//! - `image`, `texture`, `material`: what surfaces look like; `variant`: which of them. `camera`, `light`, `node`: where everything stands.
+//! - `image`, `texture`, `material`: what surfaces look like; `variant`: which of them. `camera`, `light`, `environment`, `node`: where everything stands.
 //! - `extensions`: which of them are done, and what is said about the others. `properties`: those that glTF does not know.
 
 mod accessor;
@@ -11,6 +11,7 @@ mod camera;
 mod container;
 mod document;
 mod draco;
+mod environment;
 pub mod extensions;
 mod geometry;
 mod image;

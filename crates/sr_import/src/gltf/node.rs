@@ -160,6 +160,7 @@ impl<'v> Document<'v, '_> {
             self.warn("gltf::scenes", &chosen.span, message, "this one is shown");
         }
         if let Some(chosen) = chosen {
+            self.image_based_light(chosen);
             return chosen.get("nodes").map_or(Vec::new(), |nodes| nodes.list().to_vec());
         }
         let nodes = self.root.get("nodes").map_or(&[][..], Value::list);
