@@ -179,6 +179,8 @@ fn materials() -> Vec<(&'static str, SceneDesc)> {
         sheen_roughness: NONE,
         transmission: NONE,
         thin: true,
+        diffuse_transmission: ScalarInput::Constant(0.0),
+        diffuse_transmission_color: ColorInput::Constant(Rgb::ONE),
         anisotropy: NONE,
         anisotropy_rotation: 0.0,
     };

@@ -315,6 +315,11 @@ fn extensions_of_materials() {
     assert_eq!((m.transmission, m.thin), (number(0.5), true));
     let m = with(r#""KHR_materials_volume": {"thicknessFactor": 1}"#);
     assert!(!m.thin);
+    let m = with(
+        r#""KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 0.5,
+        "diffuseTransmissionColorFactor": [1, 0.5, 0]}"#,
+    );
+    assert_eq!((m.diffuse_transmission, m.diffuse_transmission_color), (number(0.5), color(1.0, 0.5, 0.0)));
     let m = with(r#""KHR_materials_anisotropy": {"anisotropyStrength": 0.5, "anisotropyRotation": 1.25}"#);
     assert_eq!((m.anisotropy, m.anisotropy_rotation), (number(0.5), 1.25));
     let (_, diagnostics) = covered(
@@ -330,7 +335,6 @@ fn extensions_of_materials() {
     for (name, code) in [
         ("KHR_materials_iridescence", "gltf::extension"),
         ("KHR_materials_dispersion", "gltf::extension"),
-        ("KHR_materials_diffuse_transmission", "gltf::extension"),
         ("KHR_materials_shine", "gltf::unknown-extension"),
     ] {
         let (_, diagnostics) = covered(&format!(r#"{{"extensions": {{"{name}": {{}}}}}}"#));

@@ -96,6 +96,8 @@ impl MaterialDesc {
                 m.sheen_color.into(),
                 m.sheen_roughness.into(),
                 m.transmission.into(),
+                m.diffuse_transmission.into(),
+                m.diffuse_transmission_color.into(),
                 m.anisotropy.into(),
             ]),
             Self::TwoSided { .. } => Vec::new(),

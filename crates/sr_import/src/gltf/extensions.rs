@@ -41,7 +41,7 @@ pub const EXTENSIONS: &[(&str, Support)] = &[
     ("KHR_lights_punctual", Done),
     ("KHR_materials_anisotropy", Approximated("one direction for a whole texture, its mean")),
     ("KHR_materials_clearcoat", Approximated("the coat has the normals of the base")),
-    ("KHR_materials_diffuse_transmission", Reported("the surface is opaque")),
+    ("KHR_materials_diffuse_transmission", Approximated("bodies are thin sheets; nothing scatters inside")),
     ("KHR_materials_dispersion", Reported("all wavelengths bend alike")),
     ("KHR_materials_emissive_strength", Done),
     ("KHR_materials_ior", Done),

@@ -66,7 +66,8 @@ impl Document<'_, '_> {
         };
         let transmits = matches!(
             &desc,
-            MaterialDesc::MetallicRoughness(m) if m.transmission != ScalarInput::Constant(0.0)
+            MaterialDesc::MetallicRoughness(m)
+                if [m.transmission, m.diffuse_transmission].iter().any(|part| *part != ScalarInput::Constant(0.0))
         );
         if let Some(info) = material.get("normalTexture") {
             let scale = self.number(info, "scale", 1.0) as f32;
@@ -117,6 +118,17 @@ impl Document<'_, '_> {
             None => true,
         };
         let (anisotropy, anisotropy_rotation) = self.anisotropy(material, sets);
+        let leaf = material.extension("KHR_materials_diffuse_transmission");
+        let factor = ("diffuseTransmissionFactor", 0.0);
+        let diffuse_transmission =
+            self.scalar(leaf, factor, ("diffuseTransmissionTexture", channel(3)), sets);
+        let factor = ("diffuseTransmissionColorFactor", 1.0);
+        let diffuse_transmission_color = self.color(leaf, factor, "diffuseTransmissionColorTexture", sets);
+        if let (Some(leaf), false) = (leaf, thin || diffuse_transmission == ScalarInput::Constant(0.0)) {
+            let message = "light is not scattered inside bodies";
+            self.warn("gltf::diffuse-body", &leaf.span, message, "their surfaces are thin sheets");
+        }
+        let thin = thin || diffuse_transmission != ScalarInput::Constant(0.0);
         let desc = MaterialDesc::MetallicRoughness(MetallicRoughnessDesc {
             base_color: base.color,
             metallic,
@@ -150,6 +162,8 @@ impl Document<'_, '_> {
                 sets,
             ),
             thin,
+            diffuse_transmission,
+            diffuse_transmission_color,
             anisotropy,
             anisotropy_rotation,
         });
