@@ -277,6 +277,90 @@ fn light_around_a_scene() {
     assert!(scene.is_none());
 }
 
+/// A triangle with a texture of an image, and what an image's extension or the file says besides.
+fn textured(images: &str, textures: &str, rest: &str) -> String {
+    let coordinates = floats(&[0., 0., 1., 0., 0., 1.]);
+    let accessors = r#", {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC2"}"#;
+    let rest = format!(
+        r#""meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0, "TEXCOORD_0": 1}}, "material": 0}}]}}],
+        "nodes": [{{"mesh": 0}}], "materials": [{{"pbrMetallicRoughness": {{"baseColorTexture": {{"index": 0}}}}}}],
+        "images": [{images}], "textures": [{textures}]{rest}"#
+    );
+    file(&[coordinates], accessors, &rest)
+}
+
+#[test]
+fn webp_goes_before_the_image_for_others() {
+    // Two texels of (200, 100, 50), lossless.
+    let webp = "UklGRh4AAABXRUJQVlA4TBEAAAAvAQAAAAdQsiJXpv+BiOh/AAA=";
+    let images = format!(r#"{{"uri": "absent.png"}}, {{"uri": "data:image/webp;base64,{webp}"}}"#);
+    let texture = r#"{"source": 0, "extensions": {"EXT_texture_webp": {"source": 1}}}"#;
+    let (scene, diagnostics) = read(&textured(&images, texture, ""));
+    assert_eq!(codes(&diagnostics), USUAL, "{}", diagnostics.render(false));
+    let image = &scene.unwrap().images[0];
+    let Pixels::U8 { channels: 3, data } = &image.pixels else { panic!() };
+    assert_eq!((image.width, image.height, &data[..3]), (2, 1, &[200, 100, 50][..]));
+}
+
+#[test]
+fn images_have_a_budget_by_their_headers() {
+    // Each has 2^28 texels by its header; three have more than are allowed, and none is there.
+    let image = format!(r#"{{"uri": "{}"}}"#, uri(b"P5 16384 16384 255\n"));
+    let textures = r#"{"source": 0}, {"source": 1}, {"source": 2}"#;
+    let (scene, diagnostics) = read(&textured(&vec![image; 3].join(","), textures, ""));
+    assert!(scene.is_none());
+    let over = diagnostics.list.iter().filter(|d| d.message.contains("more than 536870912 pixels"));
+    assert_eq!(over.count(), 1, "{}", diagnostics.render(false));
+}
+
+#[test]
+fn quantized_attributes() {
+    let positions: Vec<u8> =
+        [0i16, 0, 0, 0, 32767, 0, 0, 0, 0, -32767, 0, 0].iter().flat_map(|v| v.to_le_bytes()).collect();
+    let normals = [0i8, 0, 127, 0, 0, 0, 127, 0, 0, 0, 127, 0].map(i8::cast_unsigned).to_vec();
+    let coordinates = [0u8, 0, 0, 0, 255, 0, 0, 0, 0, 255, 0, 0].to_vec();
+    let accessors = r#", {"bufferView": 1, "componentType": 5122, "normalized": true, "count": 3, "type": "VEC3"},
+        {"bufferView": 2, "componentType": 5120, "normalized": true, "count": 3, "type": "VEC3"},
+        {"bufferView": 3, "componentType": 5121, "normalized": true, "count": 3, "type": "VEC2"}"#;
+    let rest = r#""extensionsRequired": ["KHR_mesh_quantization"], "meshes": [{"primitives": [{"attributes":
+        {"POSITION": 1, "NORMAL": 2, "TEXCOORD_0": 3}}]}], "nodes": [{"mesh": 0, "scale": [2, 2, 2]}]"#;
+    let json = file(&[positions, normals, coordinates], accessors, rest);
+    // Rows begin at multiples of four bytes, or of eight.
+    let json = json.replace(r#""byteLength": 24}"#, r#""byteLength": 24, "byteStride": 8}"#);
+    let json = json.replace(r#""byteLength": 12}"#, r#""byteLength": 12, "byteStride": 4}"#);
+    let (scene, diagnostics) = read(&json);
+    assert_eq!(codes(&diagnostics), USUAL, "{}", diagnostics.render(false));
+    let scene = scene.unwrap();
+    assert_eq!(mesh(&scene).positions, [Vec3::ZERO, 2.0 * Vec3::X, -2.0 * Vec3::Y]);
+    assert_eq!(mesh(&scene).normals, [Vec3::Z; 3]);
+    assert_eq!(mesh(&scene).uvs, [Vec2::Y, Vec2::ONE, Vec2::ZERO]);
+}
+
+#[test]
+fn metadata_says_nothing_about_the_picture() {
+    let packets = r#""extensionsUsed": ["KHR_xmp_json_ld"], "extensions": {"KHR_xmp_json_ld": {"packets":
+        [{"@context": {"dc": "http://purl.org/dc/elements/1.1/"}, "dc:title": "A triangle"}]}},
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "nodes": [{"mesh": 0, "extensions":
+        {"KHR_xmp_json_ld": {"packet": 0}}}]"#;
+    let (scene, diagnostics) = read(&file(&[], "", packets));
+    assert!(scene.is_some());
+    assert_eq!(codes(&diagnostics), USUAL, "{}", diagnostics.render(false));
+}
+
+#[test]
+fn coats_with_normals_of_their_own_are_said() {
+    let with = |normal: &str, coat: &str| {
+        let material = format!(
+            r#"{{{normal} "extensions": {{"KHR_materials_clearcoat": {{"clearcoatFactor": 1 {coat}}}}}}}"#
+        );
+        codes(&covered(&material).1).contains(&"gltf::clearcoat-normal")
+    };
+    let (base, coat) = (r#""normalTexture": {"index": 0},"#, r#", "clearcoatNormalTexture": {"index": 0}"#);
+    assert!(!with("", "") && !with(base, coat));
+    assert!(with(base, "") && with("", coat));
+    assert!(with(base, r#", "clearcoatNormalTexture": {"index": 0, "scale": 0.5}"#));
+}
+
 #[test]
 fn specular_glossiness_with_a_factor_and_a_texture() {
     let (scene, diagnostics) = covered(

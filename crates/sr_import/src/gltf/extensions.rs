@@ -40,7 +40,10 @@ pub const EXTENSIONS: &[(&str, Support)] = &[
     ("KHR_draco_mesh_compression", Done),
     ("KHR_lights_punctual", Done),
     ("KHR_materials_anisotropy", Approximated("one direction for a whole texture, its mean")),
-    ("KHR_materials_clearcoat", Approximated("the coat has the normals of the base")),
+    (
+        "KHR_materials_clearcoat",
+        Approximated("the coat has the normals of the base; where its own differ, that is said"),
+    ),
     ("KHR_materials_diffuse_transmission", Approximated("bodies are thin sheets; nothing scatters inside")),
     ("KHR_materials_dispersion", Reported("all wavelengths bend alike")),
     ("KHR_materials_emissive_strength", Done),

@@ -105,9 +105,15 @@ impl Document<'_, '_> {
         let sheen = material.extension("KHR_materials_sheen");
         let transmission = material.extension("KHR_materials_transmission");
         let channel = Part::Channel;
-        if let Some(normals) = clearcoat.and_then(|coat| coat.get("clearcoatNormalTexture")) {
-            let message = "a coat has no normals of its own";
-            self.warn("gltf::clearcoat-normal", &normals.span, message, "those of the base are used");
+        if let Some(coat) =
+            clearcoat.filter(|coat| coat.get("clearcoatFactor").is_some_and(|f| f.number() != Some(0.0)))
+        {
+            let (own, base) = (coat.get("clearcoatNormalTexture"), material.get("normalTexture"));
+            if own.map(normal_map) != base.map(normal_map) {
+                let message = "a coat has no normals of its own";
+                let span = own.map_or(&coat.span, |own| &own.span);
+                self.warn("gltf::clearcoat-normal", span, message, "those of the base are used");
+            }
         }
         let thin = match material.extension("KHR_materials_volume") {
             Some(volume) => {
@@ -283,6 +289,14 @@ impl Document<'_, '_> {
         }
         (strength, rotation)
     }
+}
+
+/// What a reference to a normal map says: which texture, how strong, by which coordinates.
+fn normal_map(info: &Value) -> (Option<usize>, f64, Option<usize>, bool) {
+    let number = |name: &str| info.get(name).and_then(Value::index);
+    let scale = info.get("scale").and_then(Value::number).unwrap_or(1.0);
+    let is_moved = info.extension("KHR_texture_transform").is_some();
+    (number("index"), scale, number("texCoord").filter(|set| *set > 0), is_moved)
 }
 
 pub fn factor_of(base: &Base) -> Rgb {
