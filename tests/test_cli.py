@@ -1,9 +1,11 @@
 """The command line, from outside: exit codes, what is printed where, and what is left behind."""
 
+import base64
 import json
 import math
 import os
 import signal
+import struct
 import subprocess
 import sys
 import time
@@ -357,6 +359,34 @@ def test_every_file_of_the_package_has_a_docstring():
     assert len(files) > 10, "no files, no evidence"
     for file in files:
         assert ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))), file
+
+
+def test_variants_of_a_model(tmp_path, cornell_path):
+    positions = struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0)
+    mappings = {"KHR_materials_variants": {"mappings": [{"material": 1, "variants": [1]}]}}
+    emitting = {"KHR_materials_emissive_strength": {"emissiveStrength": 2}}
+    model = {
+        "asset": {"version": "2.0"},
+        "buffers": [{"byteLength": 36, "uri": "data:;base64," + base64.b64encode(positions).decode()}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+        "materials": [{}, {"emissiveFactor": [1, 1, 1], "extensions": emitting}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0, "extensions": mappings}]}],
+        "nodes": [{"mesh": 0}],
+        "extensions": {"KHR_materials_variants": {"variants": [{"name": "off"}, {"name": "on"}]}},
+    }
+    (tmp_path / "lamp.gltf").write_text(json.dumps(model))
+    listed = run("info", "lamp.gltf", cwd=tmp_path, check=0)
+    assert "variants   off, on" in listed.stdout
+    lit = json.loads(run("info", "lamp.gltf", "--variant", "on", "--json", cwd=tmp_path, check=0).stdout)
+    assert lit["variants"] == ["off", "on"]
+    assert "scene::no-light" not in [d["code"] for d in lit["diagnostics"]]
+    run("convert", "lamp.gltf", "lamp.xml", "--variant", "on", "--quiet", cwd=tmp_path, check=0)
+    assert '<emitter type="area"' in (tmp_path / "lamp.xml").read_text()
+    wrong = run("render", "lamp.gltf", "--variant", "out", cwd=tmp_path, check=1)
+    assert 'there are "off", "on"' in wrong.stderr
+    wrong = run("info", str(cornell_path), "--variant", "on", cwd=tmp_path, check=1)
+    assert "the scene has no variants" in wrong.stderr
 
 
 def test_files_are_looked_for_in_search_paths(tmp_path):

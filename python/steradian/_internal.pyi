@@ -90,6 +90,7 @@ def load_file(
     defines: Sequence[tuple[str, str]],
     search_paths: Sequence[str],
     environment: str | None,
+    variant: str | None,
     threads: int,
 ) -> LoadJob:
     """Starts to load a file; ``threads`` of 0 are all."""
@@ -103,6 +104,7 @@ def convert_file(
     path: str,
     defines: Sequence[tuple[str, str]],
     search_paths: Sequence[str],
+    variant: str | None,
     out: str,
     own_plugins: bool,
     overwrite: bool,

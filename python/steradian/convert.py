@@ -49,6 +49,7 @@ def convert(
     *,
     defines: Mapping[str, Any] | None = None,
     search_paths: Iterable[str | os.PathLike[str]] = (),
+    variant: str | None = None,
     own_plugins: bool = False,
     overwrite: bool = False,
     threads: int | None = None,
@@ -76,6 +77,7 @@ def convert(
             (glTF 2.0).
         defines: values for the file's ``$name``, over its own defaults.
         search_paths: folders for files that are neither beside the scene nor where it says.
+        variant: which of the file's sets of materials is written, as in :func:`steradian.load`.
         own_plugins: may XML name what Steradian has and Mitsuba has not? Then Mitsuba does not read it;
             otherwise the nearest that Mitsuba has is written.
         overwrite: may files that are there be replaced? Those that the scene is read from never are.
@@ -94,6 +96,7 @@ def convert(
         out,
         defines=defines,
         search_paths=search_paths,
+        variant=variant,
         own_plugins=own_plugins,
         overwrite=overwrite,
         threads=threads,
@@ -111,6 +114,7 @@ def convert_with_diagnostics(
     *,
     defines: Mapping[str, Any] | None = None,
     search_paths: Iterable[str | os.PathLike[str]] = (),
+    variant: str | None = None,
     own_plugins: bool = False,
     overwrite: bool = False,
     threads: int | None = None,
@@ -124,11 +128,15 @@ def convert_with_diagnostics(
     if isinstance(source, Mapping):
         if texts:
             raise ValueError("a dictionary has no $names: put the values in, instead of giving defines")
+        if variant is not None:
+            raise ValueError("a dictionary has no variants")
         job = _internal.convert_dict(dict(source), folders, path, own_plugins, overwrite, threads)
     else:
         name = os.fspath(source)
         pairs = list(texts.items())
-        job = _internal.convert_file(name, pairs, folders, path, own_plugins, overwrite, threads)
+        job = _internal.convert_file(
+            name, pairs, folders, variant, path, own_plugins, overwrite, threads
+        )
     _jobs.wait(job)
     files, found, report, seconds = job.result(color)
     diagnostics = tuple(Diagnostic(**fields) for fields in found)

@@ -77,6 +77,7 @@ def load(
     defines: Mapping[str, Any] | None = None,
     search_paths: Iterable[str | os.PathLike[str]] = (),
     environment: str | os.PathLike[str] | None = None,
+    variant: str | None = None,
     threads: int | None = None,
 ) -> Scene:
     """Loads a scene.
@@ -95,6 +96,8 @@ def load(
         environment: an image of latitude and longitude (HDR or EXR), +Y up, put around the scene, as
             Mitsuba's ``envmap``; then no default light is needed. A scene with an environment of its own is
             lit by both, which is said.
+        variant: which of the file's sets of materials is shown (glTF's KHR_materials_variants), by its name;
+            ``info()["variants"]`` has the names. Without it, the one that the file shows by itself.
         threads: threads to decode and compile with; all available cores unless given.
 
     Warns:
@@ -106,7 +109,12 @@ def load(
         KeyboardInterrupt: on Ctrl-C, while loading.
     """
     loaded = load_with_diagnostics(
-        source, defines=defines, search_paths=search_paths, environment=environment, threads=threads
+        source,
+        defines=defines,
+        search_paths=search_paths,
+        environment=environment,
+        variant=variant,
+        threads=threads,
     )
     if loaded.scene is None:
         raise SceneError(loaded.report.strip(), loaded.diagnostics)
@@ -121,6 +129,7 @@ def load_with_diagnostics(
     defines: Mapping[str, Any] | None = None,
     search_paths: Iterable[str | os.PathLike[str]] = (),
     environment: str | os.PathLike[str] | None = None,
+    variant: str | None = None,
     threads: int | None = None,
     color: bool = False,
 ) -> Loaded:
@@ -132,10 +141,13 @@ def load_with_diagnostics(
         name = "<dict>"
         if texts:
             raise ValueError("a dictionary has no $names: put the values in, instead of giving defines")
+        if variant is not None:
+            raise ValueError("a dictionary has no variants")
         job = _internal.load_dict(dict(source), folders, around, checked_threads(threads))
     else:
         name = os.fspath(source)
-        job = _internal.load_file(name, list(texts.items()), folders, around, checked_threads(threads))
+        pairs = list(texts.items())
+        job = _internal.load_file(name, pairs, folders, around, variant, checked_threads(threads))
     _jobs.wait(job)
     compiled, found, report, seconds = job.result(color)
     diagnostics = tuple(Diagnostic(**fields) for fields in found)

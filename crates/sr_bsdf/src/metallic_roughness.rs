@@ -1,5 +1,5 @@
 //! The metallic-roughness material of glTF 2.0 (specification, appendix B), with the extensions KHR_materials_specular,
-//! _ior, _clearcoat, _sheen, _transmission and _anisotropy.
+//! _ior, _clearcoat, _sheen, _transmission, _diffuse_transmission and _anisotropy.
 
 use std::f32::consts::{FRAC_1_PI, TAU};
 use std::sync::LazyLock;
@@ -41,6 +41,10 @@ pub struct MetallicRoughnessInputs {
     pub transmission: f32,
     /// Is the surface a thin sheet, as without KHR_materials_volume? Else light is bent.
     pub is_thin: bool,
+    /// Of a thin sheet's diffuse light, how much comes out on the other side.
+    pub diffuse_transmission: f32,
+    /// Its colour there.
+    pub diffuse_transmission_color: Rgb,
     /// Stretches highlights.
     pub anisotropy: f32,
     /// Along which direction, from the tangent, counter-clockwise, in radians.
@@ -62,6 +66,8 @@ impl Default for MetallicRoughnessInputs {
             sheen_roughness: 0.0,
             transmission: 0.0,
             is_thin: true,
+            diffuse_transmission: 0.0,
+            diffuse_transmission_color: Rgb::ONE,
             anisotropy: 0.0,
             anisotropy_rotation: 0.0,
         }
@@ -146,8 +152,8 @@ impl Sheen {
     }
 }
 
-/// Probabilities of the coat, the gloss, the cosine lobe and transmission.
-type Choice = [f32; 4];
+/// Probabilities of the coat, the gloss, the cosine lobe, transmission, and the cosine lobe on the other side.
+type Choice = [f32; 5];
 
 impl MetallicRoughness {
     /// From inputs at a point.
@@ -166,6 +172,8 @@ impl MetallicRoughness {
             clearcoat: unit(inputs.clearcoat),
             sheen_color: color(inputs.sheen_color),
             transmission: unit(inputs.transmission),
+            diffuse_transmission: if inputs.is_thin { unit(inputs.diffuse_transmission) } else { 0.0 },
+            diffuse_transmission_color: color(inputs.diffuse_transmission_color),
             ..inputs
         };
         let alpha = roughness * roughness;
@@ -214,18 +222,33 @@ impl MetallicRoughness {
 
     #[inline(always)]
     fn diffuses(&self) -> f32 {
-        (1.0 - self.i.metallic) * (1.0 - self.i.transmission)
+        (1.0 - self.i.metallic) * (1.0 - self.i.transmission) * (1.0 - self.i.diffuse_transmission)
+    }
+
+    /// Of diffuse light that comes out on the other side.
+    #[inline(always)]
+    fn diffuses_through(&self) -> f32 {
+        (1.0 - self.i.metallic) * (1.0 - self.i.transmission) * self.i.diffuse_transmission
     }
 
     #[inline(always)]
     fn choice(&self, cos: f32) -> Choice {
         let coat = self.coat_fresnel(cos);
         let gloss = self.gloss_fresnel(cos).max_element();
-        let base = self.i.base_color.max_element() * (1.0 - self.dielectric_fresnel(cos).max_element());
+        let enters = 1.0 - self.dielectric_fresnel(cos).max_element();
+        let base = self.i.base_color.max_element() * enters;
+        let across = self.diffuses_through() * self.i.diffuse_transmission_color.max_element() * enters;
         let cosine = self.diffuses() * base + self.i.sheen_color.max_element();
-        let all = [coat, (1.0 - coat) * gloss, (1.0 - coat) * cosine, (1.0 - coat) * self.transmits() * base];
+        let through = self.transmits() * base;
+        let all = [
+            coat,
+            (1.0 - coat) * gloss,
+            (1.0 - coat) * cosine,
+            (1.0 - coat) * through,
+            (1.0 - coat) * across,
+        ];
         let sum: f32 = all.iter().sum();
-        if sum > 0.0 { all.map(|p| p / sum) } else { [0.0; 4] }
+        if sum > 0.0 { all.map(|p| p / sum) } else { [0.0; 5] }
     }
 
     /// In the frame of the highlights, `wo` above; `None` if nothing is seen from there.
@@ -233,7 +256,7 @@ impl MetallicRoughness {
     fn seen(&self, wo: Vec3) -> Option<(Vec3, bool)> {
         let is_front = wo.z > 0.0;
         let up = if is_front { wo } else { flip(wo) };
-        let is_seen = is_front || (self.transmits() > 0.0);
+        let is_seen = is_front || self.transmits() > 0.0 || self.diffuses_through() > 0.0;
         (up.z > 0.0 && is_seen).then(|| (self.turn.rotate(up.truncate()).extend(up.z), is_front))
     }
 
@@ -295,16 +318,19 @@ impl MetallicRoughness {
         if !is_front && !self.i.is_thin {
             return self.eval_pdf_inside(wo, wi);
         }
-        let [p_coat, p_gloss, p_cosine, p_through] = self.choice(wo.z);
+        let [p_coat, p_gloss, p_cosine, p_through, p_across] = self.choice(wo.z);
         if wi.z < 0.0 {
             if self.i.is_thin {
                 let mirrored = flip(wi);
                 let m = (wo + mirrored).normalize_or_zero();
                 let transmits = 1.0 - self.dielectric_fresnel(wo.dot(m)).max_element();
                 let pdf = self.gloss.reflection_pdf(wo, &Facet::of(m));
-                let scale = self.transmits() * transmits * self.passes(wo.z, mirrored.z);
+                let passes = transmits * self.passes(wo.z, mirrored.z);
+                let scale = self.transmits() * passes;
                 let f = self.i.base_color * (scale * pdf / self.gloss.projected_area(mirrored));
-                return (f, p_through * pdf);
+                let diffuse = self.diffuses_through() * passes * FRAC_1_PI;
+                let f = f + self.i.diffuse_transmission_color * diffuse;
+                return (f, p_through * pdf + p_across * CosineHemisphere.pdf(mirrored));
             }
             let Some(facet) = refracting_facet(wo, wi, self.i.ior) else { return nothing };
             let transmits = 1.0 - self.dielectric_fresnel(facet.cos_o).max_element();
@@ -339,13 +365,16 @@ impl MetallicRoughness {
             let wi = refract_about(wo, m, dielectric(wo.dot(m), eta));
             return Some((wi, eta)).filter(|(wi, _)| wi.z < 0.0);
         }
-        let [p_coat, p_gloss, p_cosine, _] = self.choice(wo.z);
+        let [p_coat, p_gloss, p_cosine, p_through, _] = self.choice(wo.z);
         if u_lobe < p_coat {
             let wi = reflect_about(wo, self.coat.sample_visible(wo, u));
             return Some((wi, 1.0)).filter(|(wi, _)| wi.z > 0.0);
         }
         if u_lobe >= p_coat + p_gloss && u_lobe < p_coat + p_gloss + p_cosine {
             return Some((CosineHemisphere.sample(u)?.value, 1.0));
+        }
+        if self.i.diffuse_transmission > 0.0 && u_lobe >= p_coat + p_gloss + p_cosine + p_through {
+            return Some((flip(CosineHemisphere.sample(u)?.value), 1.0));
         }
         let m = self.gloss.sample_visible(wo, u);
         let mirrored = reflect_about(wo, m);
@@ -388,7 +417,11 @@ impl Bsdf for MetallicRoughness {
     }
 
     fn lobes(&self) -> Lobes {
-        Lobes { reflection: true, transmission: self.transmits() > 0.0, delta: false }
+        Lobes {
+            reflection: true,
+            transmission: self.transmits() + self.diffuses_through() > 0.0,
+            delta: false,
+        }
     }
 
     fn albedo(&self) -> Rgb {

@@ -126,6 +126,7 @@ impl<'a> Baker<'a> {
             Some(TextureDesc::Mix { color0, color1, weight, .. }) => {
                 larger(of_number(weight), larger(of_color(color0), of_color(color1)))
             }
+            Some(TextureDesc::OtherUvs { input, .. }) => of_color(input),
             Some(TextureDesc::MeshColor { .. }) | None => (Vec2::ONE, false),
         }
     }

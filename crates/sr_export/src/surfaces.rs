@@ -24,7 +24,9 @@ pub fn transmits(scene: &SceneDesc, id: MaterialId) -> bool {
             | MaterialDesc::Mask { .. },
         ) => true,
         Some(MaterialDesc::Principled(p)) => p.spec_trans != ScalarInput::Constant(0.0),
-        Some(MaterialDesc::MetallicRoughness(m)) => m.transmission != ScalarInput::Constant(0.0),
+        Some(MaterialDesc::MetallicRoughness(m)) => {
+            [m.transmission, m.diffuse_transmission].iter().any(|part| *part != ScalarInput::Constant(0.0))
+        }
         Some(other) => other.materials().into_iter().any(|inner| transmits(scene, inner)),
         None => false,
     }

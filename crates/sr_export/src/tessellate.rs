@@ -147,6 +147,7 @@ pub fn with_uvs(mesh: &Arc<MeshDesc>) -> Arc<MeshDesc> {
         normals: pick(&mesh.normals),
         uvs: mesh.triangles.iter().flat_map(|_| [Vec2::ZERO, Vec2::X, Vec2::Y]).collect(),
         triangles: (0..count).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect(),
+        further_uvs: Vec::new(),
         vertex_colors: pick(&mesh.vertex_colors),
         face_colors: mesh.face_colors.clone(),
     })

@@ -8,8 +8,8 @@ use sr_scene::{
     CameraDesc, ColorInput, CurveBasis, CurveUv, CurvesDesc, Emission, FilmDesc, Filter, FilterDesc, FovAxis,
     Geometry, HairAbsorption, HairDesc, Image, IntensityProfile, Lens, LightDesc, MaterialDesc, MaterialId,
     MeshColorOf, MeshDesc, MetallicRoughnessDesc, MicrofacetKind, Pixels, PrincipledDesc, PrincipledThinDesc,
-    Projection, Rgb, ScalarInput, SceneDesc, Settings, ShapeDesc, Span, SphereMapping, TextureDesc,
-    TextureId, Tilting, Wrap,
+    Projection, Rgb, ScalarInput, SceneDesc, Settings, ShapeDesc, Span, SphereMapping, SpotFalloff,
+    TextureDesc, TextureId, Tilting, Wrap,
 };
 
 const GREY: ColorInput = ColorInput::Constant(Rgb::splat(0.5));
@@ -76,6 +76,7 @@ fn scene() -> SceneDesc {
         groups: Vec::new(),
         instances: Vec::new(),
         lights: Vec::new(),
+        variants: Vec::new(),
     }
 }
 
@@ -189,6 +190,8 @@ fn materials() -> Vec<(&'static str, SceneDesc)> {
         sheen_roughness: NONE,
         transmission: NONE,
         thin: true,
+        diffuse_transmission: ScalarInput::Constant(0.0),
+        diffuse_transmission_color: ColorInput::Constant(Rgb::ONE),
         anisotropy: NONE,
         anisotropy_rotation: 0.0,
     };
@@ -354,9 +357,15 @@ fn others() -> Vec<(&'static str, &'static str, SceneDesc)> {
         intensity: Rgb::ONE,
         cutoff_angle: 0.5,
         beam_width,
+        falloff: SpotFalloff::Linear,
+        range: f32::INFINITY,
         texture,
         span: span(),
     };
+    let mut cosine_spot = with_light(spot(None, 0.4));
+    if let LightDesc::Spot { falloff, .. } = &mut cosine_spot.lights[0] {
+        *falloff = SpotFalloff::SquaredCosine;
+    }
     let mut textured_spot = with_light(spot(Some(TextureId(0)), 0.4));
     textured_spot.textures.push(bitmap(to_uv, Wrap::Clamp));
     let profile = Arc::new(IntensityProfile {
@@ -415,6 +424,11 @@ fn others() -> Vec<(&'static str, &'static str, SceneDesc)> {
             "mesh_attribute",
             with_texture(TextureDesc::MeshColor { of: MeshColorOf::Vertices, scale: 1.0, span: span() }),
         ),
+        (
+            "texture",
+            "bitmap, further coordinates",
+            with_texture(TextureDesc::OtherUvs { input: id, set: 1, span: span() }),
+        ),
         ("shape", "meshes", scene()),
         (
             "shape",
@@ -452,7 +466,22 @@ fn others() -> Vec<(&'static str, &'static str, SceneDesc)> {
         (
             "light",
             "point",
-            with_light(LightDesc::Point { position: Vec3::ZERO, intensity: Rgb::ONE, span: span() }),
+            with_light(LightDesc::Point {
+                position: Vec3::ZERO,
+                intensity: Rgb::ONE,
+                range: f32::INFINITY,
+                span: span(),
+            }),
+        ),
+        (
+            "light",
+            "point, range",
+            with_light(LightDesc::Point {
+                position: Vec3::ZERO,
+                intensity: Rgb::ONE,
+                range: 10.0,
+                span: span(),
+            }),
         ),
         (
             "light",
@@ -460,6 +489,7 @@ fn others() -> Vec<(&'static str, &'static str, SceneDesc)> {
             with_light(LightDesc::Directional { direction: Vec3::Z, irradiance: Rgb::ONE, span: span() }),
         ),
         ("light", "spot", with_light(spot(None, 0.4))),
+        ("light", "spot, squared cosine", cosine_spot),
         ("light", "spot, textured", textured_spot),
         (
             "light",

@@ -49,6 +49,8 @@ pub struct LoadOptions {
     pub search_paths: Vec<PathBuf>,
     /// An image of latitude and longitude, +Y up, that is put around the scene.
     pub environment: Option<PathBuf>,
+    /// Which of the file's variants of materials is shown; that which the file shows by itself, if none is named.
+    pub variant: Option<String>,
 }
 
 /// Loads a scene file.
@@ -57,7 +59,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> (Option<SceneDesc>, Diagnosti
     let name = path.display().to_string();
     if let Some(kind) = mesh_file::Kind::of(path) {
         let scene = mesh_file::load(path, kind, options, &mut diagnostics);
-        return (scene, diagnostics);
+        return (only_with_variant(scene, options, &mut diagnostics), diagnostics);
     }
     let directory = path.parent().unwrap_or(Path::new("")).to_owned();
     let directories = files::Directories::new(directory, &options.search_paths);
@@ -69,10 +71,10 @@ pub fn load(path: &Path, options: &LoadOptions) -> (Option<SceneDesc>, Diagnosti
             load_content(&name, text.into_bytes().into(), directories, options, &mut diagnostics)
         }),
         format::Format::Gltf => files::read(path, files::MAX_FILE_BYTES)
-            .map(|bytes| gltf::load(&name, bytes, directories.into_list(), environment, &mut diagnostics)),
+            .map(|bytes| gltf::load(&name, bytes, directories.into_list(), options, &mut diagnostics)),
     };
     match loaded {
-        Ok(scene) => (scene, diagnostics),
+        Ok(scene) => (only_with_variant(scene, options, &mut diagnostics), diagnostics),
         Err(reason) => {
             let source = diagnostics.sources.add(name.as_str(), "");
             let message = format!("cannot read the scene {name}: {reason}");
@@ -92,7 +94,22 @@ pub fn load_str(
     let mut diagnostics = Diagnostics::default();
     let directories = files::Directories::new(directory.to_owned(), &options.search_paths);
     let scene = load_content(name, text.as_bytes().into(), directories, options, &mut diagnostics);
-    (scene, diagnostics)
+    (only_with_variant(scene, options, &mut diagnostics), diagnostics)
+}
+
+/// A scene of a format that knows no variants is an error where one is asked for.
+fn only_with_variant(
+    scene: Option<SceneDesc>,
+    options: &LoadOptions,
+    diagnostics: &mut Diagnostics,
+) -> Option<SceneDesc> {
+    match (&scene, &options.variant) {
+        (Some(found), Some(variant)) if found.variants.is_empty() => {
+            diagnostics.push(gltf::variant::unknown(variant, &[], &Span::default()));
+            None
+        }
+        _ => scene,
+    }
 }
 
 /// Lowers a tree that was not read from XML. `diagnostics` holds the sources that its spans point into.
@@ -114,7 +131,7 @@ fn load_content(
 ) -> Option<SceneDesc> {
     let environment = options.environment.clone();
     if format::Format::of_name(name) == format::Format::Gltf {
-        return gltf::load(name, content.into_owned(), directories.into_list(), environment, diagnostics);
+        return gltf::load(name, content.into_owned(), directories.into_list(), options, diagnostics);
     }
     // Text that is UTF-8 already is not copied.
     let text = match content {
@@ -131,7 +148,7 @@ fn load_content(
         }
         format::Format::Gltf => {
             let bytes = text.into_owned().into_bytes();
-            gltf::load(name, bytes, directories.into_list(), environment, diagnostics)
+            gltf::load(name, bytes, directories.into_list(), options, diagnostics)
         }
     }
 }

@@ -3,11 +3,11 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use sr_import::{LoadOptions, load_str};
 use sr_scene::{
-    ColorInput, Diagnostics, Geometry, MaterialDesc, MeshDesc, MetallicRoughnessDesc, Pixels, Rgb,
-    ScalarInput, SceneDesc,
+    ColorInput, Diagnostics, Geometry, LightDesc, MaterialDesc, MeshDesc, MetallicRoughnessDesc, Pixels, Rgb,
+    ScalarInput, SceneDesc, TextureDesc,
 };
 
 fn read(json: &str) -> (Option<SceneDesc>, Diagnostics) {
@@ -133,10 +133,12 @@ fn covered(material: &str) -> (SceneDesc, Diagnostics) {
     let image =
         uri(b"P7\nWIDTH 1\nHEIGHT 1\nDEPTH 4\nMAXVAL 255\nTUPLTYPE RGB_ALPHA\nENDHDR\n\x33\x66\xff\x80");
     let rest = format!(
-        r#""meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}, "material": 0}}]}}], "nodes": [{{"mesh": 0}}],
+        r#""meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0, "TEXCOORD_0": 1}}, "material": 0}}]}}], "nodes": [{{"mesh": 0}}],
         "images": [{{"uri": "{image}"}}], "textures": [{{"source": 0}}], "materials": [{material}]"#
     );
-    let (scene, diagnostics) = read(&file(&[], "", &rest));
+    let coordinates = floats(&[0., 0., 1., 0., 0., 1.]);
+    let accessors = r#", {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC2"}"#;
+    let (scene, diagnostics) = read(&file(&[coordinates], accessors, &rest));
     let scene = scene.unwrap_or_else(|| panic!("{}", diagnostics.render(false)));
     (scene, diagnostics)
 }
@@ -147,6 +149,216 @@ fn metallic_roughness(scene: &SceneDesc) -> MetallicRoughnessDesc {
         _ => None,
     });
     found.expect("a metallic-roughness material")
+}
+
+#[test]
+fn textures_take_the_coordinates_that_they_name() {
+    let (first, second) = (floats(&[0., 0., 1., 0., 0., 1.]), floats(&[0.5, 0.25, 0.5, 0.5, 0.75, 1.0]));
+    let accessors = r#", {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC2"},
+        {"bufferView": 2, "componentType": 5126, "count": 3, "type": "VEC2"}"#;
+    let image =
+        uri(b"P7\nWIDTH 1\nHEIGHT 1\nDEPTH 4\nMAXVAL 255\nTUPLTYPE RGB_ALPHA\nENDHDR\n\x33\x66\xff\x80");
+    let with = |attributes: &str, material: &str| {
+        let rest = format!(
+            r#""meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0, {attributes}}}, "material": 0}}]}}],
+            "nodes": [{{"mesh": 0}}], "images": [{{"uri": "{image}"}}], "textures": [{{"source": 0}}],
+            "materials": [{material}]"#
+        );
+        let (scene, diagnostics) = read(&file(&[first.clone(), second.clone()], accessors, &rest));
+        (scene.unwrap_or_else(|| panic!("{}", diagnostics.render(false))), diagnostics)
+    };
+    let both = r#""TEXCOORD_0": 1, "TEXCOORD_1": 2"#;
+    let (scene, diagnostics) = with(
+        both,
+        r#"{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}},
+        "emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": 0, "texCoord": 1}}"#,
+    );
+    assert_eq!(codes(&diagnostics), USUAL, "{}", diagnostics.render(false));
+    let upright = |uvs: &[f32]| -> Vec<Vec2> { uvs.chunks(2).map(|c| Vec2::new(c[0], 1.0 - c[1])).collect() };
+    let (first, second) = (upright(&[0., 0., 1., 0., 0., 1.]), upright(&[0.5, 0.25, 0.5, 0.5, 0.75, 1.0]));
+    assert_eq!(mesh(&scene).uvs, first);
+    assert_eq!(mesh(&scene).further_uvs[..], *std::slice::from_ref(&second));
+    let ColorInput::Texture(emitted) = scene.shapes[0].emission.unwrap().radiance else { panic!() };
+    assert!(matches!(scene.textures[emitted.0 as usize], TextureDesc::OtherUvs { set: 1, .. }));
+    let ColorInput::Texture(base) = metallic_roughness(&scene).base_color else { panic!() };
+    assert!(matches!(scene.textures[base.0 as usize], TextureDesc::Bitmap { .. }));
+    // Tangents follow the coordinates of the normals, which become the first; a transform may name another set.
+    let (scene, diagnostics) = with(
+        both,
+        r#"{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}, "normalTexture": {"index": 0, "texCoord": 0,
+        "extensions": {"KHR_texture_transform": {"texCoord": 1}}}}"#,
+    );
+    assert_eq!(codes(&diagnostics), USUAL, "{}", diagnostics.render(false));
+    assert_eq!((&mesh(&scene).uvs, &mesh(&scene).further_uvs[..]), (&second, &[first][..]));
+    let ColorInput::Texture(base) = metallic_roughness(&scene).base_color else { panic!() };
+    assert!(matches!(scene.textures[base.0 as usize], TextureDesc::OtherUvs { set: 1, .. }));
+    // One set only, which need not be the first.
+    let base = r#"{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0, "texCoord": 1}}}"#;
+    let (scene, _) = with(both, base);
+    assert_eq!((&mesh(&scene).uvs, mesh(&scene).further_uvs.len()), (&second, 0));
+    let (_, diagnostics) = with(r#""TEXCOORD_0": 1"#, base);
+    assert!(codes(&diagnostics).contains(&"gltf::no-coordinates"));
+}
+
+#[test]
+fn variants_choose_materials() {
+    let rest = |second: &str| {
+        format!(
+            r#""meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}, "material": 0, "extensions":
+            {{"KHR_materials_variants": {{"mappings": [{{"material": 1, "variants": [0, 2]}}]}}}}}}]}}],
+            "nodes": [{{"mesh": 0}}], "materials": [{{"pbrMetallicRoughness": {{"baseColorFactor": [1, 0, 0, 1]}}}},
+            {{"pbrMetallicRoughness": {{"baseColorFactor": [0, 0, 1, 1]}}}}], "extensions": {{"KHR_materials_variants":
+            {{"variants": [{{"name": "blue"}}, {{"name": "{second}"}}, {{"name": "also blue"}}]}}}}"#
+        )
+    };
+    let with = |variant: Option<&str>| {
+        let options = LoadOptions { variant: variant.map(str::to_owned), ..LoadOptions::default() };
+        load_str("test.gltf", &file(&[], "", &rest("red")), Path::new(""), &options)
+    };
+    let (red, blue) = (Rgb::X, Rgb::Z);
+    for (variant, color) in [(None, red), (Some("blue"), blue), (Some("red"), red), (Some("also blue"), blue)]
+    {
+        let (scene, diagnostics) = with(variant);
+        assert_eq!(codes(&diagnostics), USUAL, "{}", diagnostics.render(false));
+        let scene = scene.unwrap();
+        assert_eq!(metallic_roughness(&scene).base_color, ColorInput::Constant(color), "{variant:?}");
+        assert_eq!(scene.variants, ["blue", "red", "also blue"]);
+    }
+    let (scene, diagnostics) = with(Some("bleu"));
+    assert!(scene.is_none());
+    let error = &diagnostics.list[0];
+    assert_eq!(error.code, "scene::unknown-variant");
+    let message = "no variant is called \"bleu\": there are \"blue\", \"red\", \"also blue\"";
+    assert_eq!(error.message, message);
+    assert_eq!(error.hint.as_deref(), Some("did you mean \"blue\"?"));
+    let options = LoadOptions { variant: Some("blue".into()), ..LoadOptions::default() };
+    let (scene, diagnostics) = load_str("a.xml", "<scene version=\"3.0.0\"/>", Path::new(""), &options);
+    assert!(scene.is_none());
+    assert!(diagnostics.list.iter().any(|d| d.message.ends_with("the scene has no variants")));
+}
+
+#[test]
+fn light_around_a_scene() {
+    // Sides of one texel, sRGB 188, which is half: red, green and so on; the last is four times as bright, by its opacity.
+    let side = |r: u8, g: u8, b: u8, a: u8| {
+        let mut bytes = b"P7\nWIDTH 1\nHEIGHT 1\nDEPTH 4\nMAXVAL 255\nTUPLTYPE RGB_ALPHA\nENDHDR\n".to_vec();
+        bytes.extend([r, g, b, a]);
+        format!(r#"{{"uri": "{}"}}"#, uri(&bytes))
+    };
+    let sides = [side(255, 0, 0, 255), side(0, 255, 0, 255), side(0, 0, 255, 255)];
+    let sides =
+        [&sides[..], &[side(255, 255, 0, 255), side(0, 255, 255, 255), side(255, 255, 255, 64)]].concat();
+    let json = |faces: &str| {
+        let rest = format!(
+            r#""meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}}}]}}], "nodes": [{{"mesh": 0}}],
+            "images": [{}], "scenes": [{{"nodes": [0], "extensions": {{"EXT_lights_image_based": {{"light": 0}}}}}}],
+            "extensions": {{"EXT_lights_image_based": {{"lights": [{{"intensity": 2, "rotation": [0, 1, 0, 0],
+            "specularImageSize": 1, "specularImages": [{faces}]}}]}}}}"#,
+            sides.join(",")
+        );
+        file(&[], "", &rest)
+    };
+    let (scene, diagnostics) = read(&json("[0, 1, 2, 3, 4, 5]"));
+    assert_eq!(codes(&diagnostics), ["scene::no-camera"], "{}", diagnostics.render(false));
+    let scene = scene.unwrap();
+    let LightDesc::Environment { image, scale: 2.0, world_from_light, .. } = &scene.lights[0] else {
+        panic!()
+    };
+    assert!((*world_from_light * Vec3::X).distance(Vec3::NEG_X) < 1e-6);
+    let image = &scene.images[*image as usize];
+    let Pixels::F32 { data, .. } = &image.pixels else { panic!() };
+    // Latitude and longitude: rows up and down; columns between -Z and +X, +X and +Z, and so on.
+    assert_eq!((image.width, image.height), (4, 2));
+    assert_eq!((&data[..3], &data[12..15]), (&[0.0, 0.0, 1.0][..], &[1.0, 1.0, 0.0][..]));
+    let (scene, diagnostics) = read(&json("[0, 1, 2]"));
+    assert!(scene.is_some());
+    assert!(codes(&diagnostics).contains(&"gltf::image-based-light"));
+    let (scene, _) = read(&json("[0, 1, 2, 3, 4, 9]"));
+    assert!(scene.is_none());
+}
+
+/// A triangle with a texture of an image, and what an image's extension or the file says besides.
+fn textured(images: &str, textures: &str, rest: &str) -> String {
+    let coordinates = floats(&[0., 0., 1., 0., 0., 1.]);
+    let accessors = r#", {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC2"}"#;
+    let rest = format!(
+        r#""meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0, "TEXCOORD_0": 1}}, "material": 0}}]}}],
+        "nodes": [{{"mesh": 0}}], "materials": [{{"pbrMetallicRoughness": {{"baseColorTexture": {{"index": 0}}}}}}],
+        "images": [{images}], "textures": [{textures}]{rest}"#
+    );
+    file(&[coordinates], accessors, &rest)
+}
+
+#[test]
+fn webp_goes_before_the_image_for_others() {
+    // Two texels of (200, 100, 50), lossless.
+    let webp = "UklGRh4AAABXRUJQVlA4TBEAAAAvAQAAAAdQsiJXpv+BiOh/AAA=";
+    let images = format!(r#"{{"uri": "absent.png"}}, {{"uri": "data:image/webp;base64,{webp}"}}"#);
+    let texture = r#"{"source": 0, "extensions": {"EXT_texture_webp": {"source": 1}}}"#;
+    let (scene, diagnostics) = read(&textured(&images, texture, ""));
+    assert_eq!(codes(&diagnostics), USUAL, "{}", diagnostics.render(false));
+    let image = &scene.unwrap().images[0];
+    let Pixels::U8 { channels: 3, data } = &image.pixels else { panic!() };
+    assert_eq!((image.width, image.height, &data[..3]), (2, 1, &[200, 100, 50][..]));
+}
+
+#[test]
+fn images_have_a_budget_by_their_headers() {
+    // Each has 2^28 texels by its header; three have more than are allowed, and none is there.
+    let image = format!(r#"{{"uri": "{}"}}"#, uri(b"P5 16384 16384 255\n"));
+    let textures = r#"{"source": 0}, {"source": 1}, {"source": 2}"#;
+    let (scene, diagnostics) = read(&textured(&vec![image; 3].join(","), textures, ""));
+    assert!(scene.is_none());
+    let over = diagnostics.list.iter().filter(|d| d.message.contains("more than 536870912 pixels"));
+    assert_eq!(over.count(), 1, "{}", diagnostics.render(false));
+}
+
+#[test]
+fn quantized_attributes() {
+    let positions: Vec<u8> =
+        [0i16, 0, 0, 0, 32767, 0, 0, 0, 0, -32767, 0, 0].iter().flat_map(|v| v.to_le_bytes()).collect();
+    let normals = [0i8, 0, 127, 0, 0, 0, 127, 0, 0, 0, 127, 0].map(i8::cast_unsigned).to_vec();
+    let coordinates = [0u8, 0, 0, 0, 255, 0, 0, 0, 0, 255, 0, 0].to_vec();
+    let accessors = r#", {"bufferView": 1, "componentType": 5122, "normalized": true, "count": 3, "type": "VEC3"},
+        {"bufferView": 2, "componentType": 5120, "normalized": true, "count": 3, "type": "VEC3"},
+        {"bufferView": 3, "componentType": 5121, "normalized": true, "count": 3, "type": "VEC2"}"#;
+    let rest = r#""extensionsRequired": ["KHR_mesh_quantization"], "meshes": [{"primitives": [{"attributes":
+        {"POSITION": 1, "NORMAL": 2, "TEXCOORD_0": 3}}]}], "nodes": [{"mesh": 0, "scale": [2, 2, 2]}]"#;
+    let json = file(&[positions, normals, coordinates], accessors, rest);
+    // Rows begin at multiples of four bytes, or of eight.
+    let json = json.replace(r#""byteLength": 24}"#, r#""byteLength": 24, "byteStride": 8}"#);
+    let json = json.replace(r#""byteLength": 12}"#, r#""byteLength": 12, "byteStride": 4}"#);
+    let (scene, diagnostics) = read(&json);
+    assert_eq!(codes(&diagnostics), USUAL, "{}", diagnostics.render(false));
+    let scene = scene.unwrap();
+    assert_eq!(mesh(&scene).positions, [Vec3::ZERO, 2.0 * Vec3::X, -2.0 * Vec3::Y]);
+    assert_eq!(mesh(&scene).normals, [Vec3::Z; 3]);
+    assert_eq!(mesh(&scene).uvs, [Vec2::Y, Vec2::ONE, Vec2::ZERO]);
+}
+
+#[test]
+fn metadata_says_nothing_about_the_picture() {
+    let packets = r#""extensionsUsed": ["KHR_xmp_json_ld"], "extensions": {"KHR_xmp_json_ld": {"packets":
+        [{"@context": {"dc": "http://purl.org/dc/elements/1.1/"}, "dc:title": "A triangle"}]}},
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "nodes": [{"mesh": 0, "extensions":
+        {"KHR_xmp_json_ld": {"packet": 0}}}]"#;
+    let (scene, diagnostics) = read(&file(&[], "", packets));
+    assert!(scene.is_some());
+    assert_eq!(codes(&diagnostics), USUAL, "{}", diagnostics.render(false));
+}
+
+#[test]
+fn coats_with_normals_of_their_own_are_said() {
+    let with = |normal: &str, coat: &str| {
+        let material = format!(
+            r#"{{{normal} "extensions": {{"KHR_materials_clearcoat": {{"clearcoatFactor": 1 {coat}}}}}}}"#
+        );
+        codes(&covered(&material).1).contains(&"gltf::clearcoat-normal")
+    };
+    let (base, coat) = (r#""normalTexture": {"index": 0},"#, r#", "clearcoatNormalTexture": {"index": 0}"#);
+    assert!(!with("", "") && !with(base, coat));
+    assert!(with(base, "") && with("", coat));
+    assert!(with(base, r#", "clearcoatNormalTexture": {"index": 0, "scale": 0.5}"#));
 }
 
 #[test]
@@ -187,6 +399,11 @@ fn extensions_of_materials() {
     assert_eq!((m.transmission, m.thin), (number(0.5), true));
     let m = with(r#""KHR_materials_volume": {"thicknessFactor": 1}"#);
     assert!(!m.thin);
+    let m = with(
+        r#""KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 0.5,
+        "diffuseTransmissionColorFactor": [1, 0.5, 0]}"#,
+    );
+    assert_eq!((m.diffuse_transmission, m.diffuse_transmission_color), (number(0.5), color(1.0, 0.5, 0.0)));
     let m = with(r#""KHR_materials_anisotropy": {"anisotropyStrength": 0.5, "anisotropyRotation": 1.25}"#);
     assert_eq!((m.anisotropy, m.anisotropy_rotation), (number(0.5), 1.25));
     let (_, diagnostics) = covered(
@@ -202,7 +419,6 @@ fn extensions_of_materials() {
     for (name, code) in [
         ("KHR_materials_iridescence", "gltf::extension"),
         ("KHR_materials_dispersion", "gltf::extension"),
-        ("KHR_materials_diffuse_transmission", "gltf::extension"),
         ("KHR_materials_shine", "gltf::unknown-extension"),
     ] {
         let (_, diagnostics) = covered(&format!(r#"{{"extensions": {{"{name}": {{}}}}}}"#));

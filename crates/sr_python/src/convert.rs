@@ -50,12 +50,15 @@ struct Request {
     overwrite: bool,
 }
 
-/// Starts to convert a file; `defines` override the file's own defaults; `threads` of 0 are all.
+/// Starts to convert a file; `defines` override the file's own defaults; `variant` is one of the file's sets of
+/// materials; `threads` of 0 are all.
 #[pyfunction]
+#[allow(clippy::too_many_arguments)]
 pub fn convert_file(
     path: PathBuf,
     defines: Vec<(String, String)>,
     search_paths: Vec<PathBuf>,
+    variant: Option<String>,
     out: PathBuf,
     own_plugins: bool,
     overwrite: bool,
@@ -65,7 +68,7 @@ pub fn convert_file(
     let request = Request { out, own_plugins, overwrite };
     let job = Job::start(threads, move || {
         let start = Instant::now();
-        let options = LoadOptions { defines, search_paths, environment: None };
+        let options = LoadOptions { defines, search_paths, environment: None, variant };
         let (scene, diagnostics) = sr_import::load(&path, &options);
         written(scene, diagnostics, &request, start)
     })?;

@@ -45,19 +45,21 @@ impl LoadJob {
     }
 }
 
-/// Starts to load a file; `defines` override the file's own defaults; `environment` is an image to be put around the scene;
-/// `threads` of 0 are all.
+/// Starts to load a file; `defines` override the file's own defaults; `environment` is an image to be put around the scene,
+/// `variant` one of the file's sets of materials; `threads` of 0 are all.
 #[pyfunction]
 pub fn load_file(
     path: PathBuf,
     defines: Vec<(String, String)>,
     search_paths: Vec<PathBuf>,
     environment: Option<PathBuf>,
+    variant: Option<String>,
     threads: usize,
 ) -> PyResult<LoadJob> {
     let job = Job::start(threads, move || {
         let start = Instant::now();
-        let (desc, diagnostics) = sr_import::load(&path, &LoadOptions { defines, search_paths, environment });
+        let options = LoadOptions { defines, search_paths, environment, variant };
+        let (desc, diagnostics) = sr_import::load(&path, &options);
         Ok(compiled(desc, diagnostics, start))
     })?;
     Ok(LoadJob(job))

@@ -13,6 +13,7 @@ use crate::names::value_error;
 pub struct Scene {
     scene: Arc<sr_render::Scene>,
     counts: Counts,
+    variants: Vec<String>,
 }
 
 /// What the description held.
@@ -40,7 +41,7 @@ impl Counts {
 
 impl Scene {
     pub fn new(desc: &SceneDesc, scene: sr_render::Scene) -> Self {
-        Self { scene: Arc::new(scene), counts: Counts::of(desc) }
+        Self { scene: Arc::new(scene), counts: Counts::of(desc), variants: desc.variants.clone() }
     }
 
     pub fn shared(&self) -> Arc<sr_render::Scene> {
@@ -86,6 +87,7 @@ impl Scene {
         dict.set_item("materials", self.scene.material_count())?;
         dict.set_item("textures", self.scene.texture_count())?;
         dict.set_item("lights", self.scene.lights().count())?;
+        dict.set_item("variants", &self.variants)?;
         let bounds = self.scene.geometry().bounds();
         let corners = (!bounds.is_empty()).then(|| [bounds.min.to_array(), bounds.max.to_array()]);
         dict.set_item("bounds", corners)?;

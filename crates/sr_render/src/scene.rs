@@ -6,14 +6,14 @@ use std::sync::Arc;
 
 use sr_geometry::{
     BilinearPatch, CurveBasis, CurveUv, Curves, Cylinder, Disk, Geometry, GeometryError, GeometryInput, Hit,
-    Instance, Ray, Shape, ShapeId, Sphere, TriangleMesh,
+    Instance, Ray, Shape, ShapeId, Sphere, Surface, TriangleMesh,
 };
 use sr_scene::{CameraDesc, CurvesDesc, Emission, MaterialId, MeshDesc, SceneDesc, Settings, ShapeDesc};
 use thiserror::Error;
 
 use crate::light::{AreaLight, Compiled, Extended, LightId, Lights, Triangle, compile_light};
 use crate::material::{MaterialError, Materials};
-use crate::texture::{MeshColors, RayCone, TexturePoint, Textures, footprint};
+use crate::texture::{FurtherUvs, MeshColors, RayCone, TexturePoint, Textures, footprint};
 
 /// Why a description does not compile.
 #[derive(Debug, Error)]
@@ -38,6 +38,9 @@ pub struct Scene {
     material_count: usize,
     pub(crate) textures: Textures,
     mesh_colors: MeshColors,
+    further_uvs: FurtherUvs,
+    /// Do textures depend on more than the first texture coordinates?
+    completes_points: bool,
     texture_count: usize,
     pub(crate) lights: Lights,
 }
@@ -74,6 +77,7 @@ impl Scene {
             .chain(grouped)
             .map(|(shape, light)| ShapeRecord { material: shape.material, light })
             .collect();
+        let (mesh_colors, further_uvs) = (MeshColors::new(desc), FurtherUvs::new(desc));
         Ok(Self {
             camera: desc.camera.clone(),
             settings: desc.settings.clone(),
@@ -81,8 +85,10 @@ impl Scene {
             shapes,
             materials,
             material_count: desc.materials.len(),
+            completes_points: textures.has_mipmaps() || !mesh_colors.is_empty() || !further_uvs.is_empty(),
             textures,
-            mesh_colors: MeshColors::new(desc),
+            mesh_colors,
+            further_uvs,
             texture_count: desc.textures.len(),
             lights,
         })
@@ -125,14 +131,17 @@ impl Scene {
 
     /// Bytes of geometry and textures.
     pub fn memory_bytes(&self) -> usize {
-        self.geometry.memory_bytes() + self.textures.memory_bytes() + self.mesh_colors.memory_bytes()
+        self.geometry.memory_bytes()
+            + self.textures.memory_bytes()
+            + self.mesh_colors.memory_bytes()
+            + self.further_uvs.memory_bytes()
     }
 
     /// Where textures are looked up at a hit of a ray.
     #[inline(always)]
     pub(crate) fn texture_point(&self, ray: &Ray, hit: &Hit, cone: RayCone) -> TexturePoint {
         let mut at = self.geometry.uv(ray, hit).into();
-        if self.textures.has_mipmaps() || !self.mesh_colors.is_empty() {
+        if self.completes_points {
             self.complete(&mut at, ray, hit, cone);
         }
         at
@@ -147,6 +156,21 @@ impl Scene {
         if !self.mesh_colors.is_empty() {
             [at.vertex_color, at.face_color] = self.mesh_colors.at(&self.geometry, hit);
         }
+        if !self.further_uvs.is_empty() {
+            at.further_uvs = self.further_uvs.at(&self.geometry, hit, at.uv);
+        }
+    }
+
+    /// The surface of an emitter, with the texture coordinates that its emission is looked up at.
+    #[inline]
+    pub(crate) fn emitter(&self, surface: Surface, light: LightId, hit: &Hit) -> Surface {
+        if self.further_uvs.is_empty() {
+            return surface;
+        }
+        let Some(set) = self.lights.other_set(light, &self.textures) else { return surface };
+        let mut at = TexturePoint::from(surface.uv);
+        at.further_uvs = self.further_uvs.at(&self.geometry, hit, at.uv);
+        Surface { uv: at.at_set(set).uv, ..surface }
     }
 
     #[inline]
@@ -243,13 +267,17 @@ fn area_light(
 ) -> Option<AreaLight> {
     match &shape.geometry {
         sr_scene::Geometry::Mesh(mesh) => {
+            let further = textures
+                .other_set(emission.radiance)
+                .and_then(|set| mesh.further_uvs.get(usize::from(set) - 1));
+            let set = further.filter(|set| !set.is_empty()).unwrap_or(&mesh.uvs);
             let corners = (0..mesh.triangles.len() as u32).map(|primitive| {
                 let positions = geometry.triangle_vertices(id, primitive);
                 let of = mesh.triangles[primitive as usize].map(|i| i as usize);
-                let uvs = if mesh.uvs.is_empty() {
+                let uvs = if set.is_empty() {
                     [glam::Vec2::ZERO, glam::Vec2::X, glam::Vec2::Y]
                 } else {
-                    of.map(|i| mesh.uvs[i])
+                    of.map(|i| set[i])
                 };
                 Triangle::new(positions, uvs)
             });

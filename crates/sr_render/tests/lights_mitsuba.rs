@@ -6,7 +6,8 @@ use glam::{Affine2, Mat3, Mat4, Vec3};
 use sr_render::Scene;
 use sr_render::light::{Sky, Sun};
 use sr_scene::{
-    ColorInput, Filter, FovAxis, Image, LightDesc, Pixels, Rgb, SceneDesc, Span, TextureDesc, TextureId, Wrap,
+    ColorInput, Filter, FovAxis, Image, LightDesc, Pixels, Rgb, SceneDesc, Span, SpotFalloff, TextureDesc,
+    TextureId, Wrap,
 };
 use sr_testing::scenes::{camera_on_point, diffuse_scene};
 
@@ -43,6 +44,8 @@ fn spot(texture: Option<TextureId>) -> LightDesc {
         intensity: Rgb::splat(2.0),
         cutoff_angle: 40_f32.to_radians(),
         beam_width: 20_f32.to_radians(),
+        falloff: SpotFalloff::Linear,
+        range: f32::INFINITY,
         texture,
         span: Span::default(),
     }

@@ -6,8 +6,8 @@ use std::sync::atomic::AtomicBool;
 use glam::{Affine2, Vec2, Vec3};
 use sr_render::{Control, Film, RenderSettings, RenderedImage, Scene, render};
 use sr_scene::{
-    ColorInput, Filter, Geometry, Image, InstanceDesc, LightDesc, MaterialDesc, MaterialId, MeshColorOf,
-    MeshDesc, Pixels, Rgb, SceneDesc, Span, TextureDesc, TextureId, Wrap,
+    ColorInput, Emission, Filter, Geometry, Image, InstanceDesc, LightDesc, MaterialDesc, MaterialId,
+    MeshColorOf, MeshDesc, Pixels, Rgb, SceneDesc, Span, TextureDesc, TextureId, Wrap,
 };
 use sr_testing::scenes::{camera_on_point, diffuse_scene, shape};
 
@@ -86,6 +86,77 @@ fn a_floor_shows_the_colors_of_its_mesh() {
                 }
             }
         }
+    }
+}
+
+/// Red and green, each on one half of an image.
+fn red_and_green() -> (Image, TextureDesc) {
+    let pixels = Pixels::U8 { channels: 3, data: vec![255, 0, 0, 0, 255, 0] };
+    let image = Image { name: "halves".into(), width: 2, height: 1, pixels };
+    let texture = TextureDesc::Bitmap {
+        image: 0,
+        filter: Filter::Bilinear,
+        wrap: Wrap::Clamp,
+        srgb: false,
+        to_uv: Affine2::IDENTITY,
+        span: Span::default(),
+    };
+    (image, texture)
+}
+
+fn at_set(set: u32) -> TextureDesc {
+    let input = ColorInput::Texture(TextureId(0));
+    TextureDesc::OtherUvs { input, set, span: Span::default() }
+}
+
+#[test]
+fn a_floor_shows_textures_at_further_coordinates() {
+    let (left, right) = (vec![Vec2::new(0.1, 0.5); 4], vec![Vec2::new(0.9, 0.5); 4]);
+    for strategy in STRATEGIES {
+        // Of the third set there is nothing: the first is used.
+        for (set, expected) in [(1, Rgb::X), (2, Rgb::Y), (3, Rgb::new(0.5, 0.5, 0.0))] {
+            let mesh = MeshDesc { further_uvs: vec![left.clone(), right.clone()], ..MeshDesc::default() };
+            let (image, texture) = red_and_green();
+            let mut desc = textured_floor(Vec3::new(0.0, 0.0, 20.0), Vec3::ZERO, texture, mesh);
+            desc.images.push(Arc::new(image));
+            desc.textures.push(at_set(set));
+            desc.materials[0] = MaterialDesc::Diffuse { reflectance: ColorInput::Texture(TextureId(1)) };
+            let image = rendered(&desc, strategy, 64);
+            for c in 0..3 {
+                let off = (image.rgb[c] - expected[c]).abs();
+                assert!(off < 5.0 * image.stderr[c] + 1e-3, "{strategy}, set {set}: {:?}", image.rgb);
+            }
+        }
+    }
+}
+
+#[test]
+fn lights_shine_by_their_further_coordinates() {
+    let uvs = vec![Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y];
+    let other = vec![Vec2::new(0.1, 0.5); 4];
+    for strategy in STRATEGIES {
+        let lit = |mesh: MeshDesc, radiance: u32| {
+            let (image, texture) = red_and_green();
+            let (from, at) = (Vec3::new(0.0, -20.0, 5.0), Vec3::new(0.0, 0.0, 5.0));
+            let mut desc = textured_floor(from, at, texture, MeshDesc::default());
+            desc.images.push(Arc::new(image));
+            desc.textures.push(at_set(1));
+            desc.materials[0] = MaterialDesc::Diffuse { reflectance: ColorInput::Constant(Rgb::splat(0.5)) };
+            desc.lights.clear();
+            let corner = |x, z| Vec3::new(x, 0.0, z);
+            let positions = vec![corner(-5.0, 1.0), corner(5.0, 1.0), corner(5.0, 9.0), corner(-5.0, 9.0)];
+            let mesh = MeshDesc { positions, triangles: vec![[0, 1, 2], [0, 2, 3]], ..mesh };
+            let radiance = ColorInput::Texture(TextureId(radiance));
+            let mut lamp = shape(Geometry::Mesh(Arc::new(mesh)), None);
+            lamp.emission = Some(Emission { radiance });
+            desc.shapes.push(lamp);
+            rendered(&desc, strategy, 64).rgb
+        };
+        let first = lit(MeshDesc { uvs: uvs.clone(), ..MeshDesc::default() }, 0);
+        let further_uvs = vec![uvs.clone()];
+        let further = lit(MeshDesc { uvs: other.clone(), further_uvs, ..MeshDesc::default() }, 1);
+        assert_eq!(first, further, "{strategy:?}");
+        assert!(first.iter().any(|v| *v > 0.0));
     }
 }
 

@@ -38,6 +38,8 @@ pub struct SceneDesc {
     pub instances: Vec<InstanceDesc>,
     /// Lights that are not shapes: environment, point, spot, directional.
     pub lights: Vec<LightDesc>,
+    /// Names of the sets of materials that the file has, of which one is shown; most files have none.
+    pub variants: Vec<String>,
 }
 
 impl SceneDesc {

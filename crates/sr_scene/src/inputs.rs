@@ -96,6 +96,8 @@ impl MaterialDesc {
                 m.sheen_color.into(),
                 m.sheen_roughness.into(),
                 m.transmission.into(),
+                m.diffuse_transmission.into(),
+                m.diffuse_transmission_color.into(),
                 m.anisotropy.into(),
             ]),
             Self::Hair(hair) => {
@@ -135,6 +137,7 @@ impl TextureDesc {
         match *self {
             Self::Bitmap { .. } | Self::MeshColor { .. } => Vec::new(),
             Self::Checkerboard { color0, color1, .. } => given([color0.into(), color1.into()]),
+            Self::OtherUvs { input, .. } => given([input.into()]),
             Self::Scale { input, factor, .. } => given([input.into(), factor.into()]),
             Self::Mix { color0, color1, weight, .. } => given([color0.into(), color1.into(), weight.into()]),
         }

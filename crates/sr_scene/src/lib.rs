@@ -25,13 +25,13 @@ pub use desc::{MaterialId, SceneDesc, Settings, TextureId};
 pub use diagnostic::{Diagnostic, Diagnostics, Severity, SourceId, Sources, Span};
 pub use film::{Crop, FilmDesc, FilmWindow, FilterDesc};
 pub use image::{Image, Pixels};
-pub use light::{LightDesc, MAX_PORTALS, Portal, SphereMapping};
+pub use light::{LightDesc, MAX_PORTALS, Portal, SphereMapping, SpotFalloff};
 pub use material::{
     ColorInput, HairAbsorption, HairDesc, MaterialDesc, MetallicRoughnessDesc, MicrofacetKind,
     PrincipledDesc, PrincipledThinDesc, ScalarInput, Tilting,
 };
 pub use profile::IntensityProfile;
-pub use shape::{Emission, Geometry, GroupDesc, InstanceDesc, MeshDesc, ShapeDesc};
+pub use shape::{Emission, Geometry, GroupDesc, InstanceDesc, MAX_UV_SETS, MeshDesc, ShapeDesc};
 pub use texture::{Filter, MeshColorOf, TextureDesc, Wrap};
 pub use validate::{MAX_FILM_PIXELS, validate};
 

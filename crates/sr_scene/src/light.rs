@@ -30,6 +30,15 @@ pub struct Portal {
     pub edges: [Vec3; 2],
 }
 
+/// How a spot's intensity falls between its two angles from 1 to 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SpotFalloff {
+    /// Linearly with the angle, as Mitsuba's.
+    Linear,
+    /// By the square of what is linear in the angle's cosine, as glTF's.
+    SquaredCosine,
+}
+
 /// A light without a surface in the scene.
 #[derive(Clone, Debug)]
 pub enum LightDesc {
@@ -63,6 +72,8 @@ pub enum LightDesc {
         position: Vec3,
         /// Radiant intensity, in W sr⁻¹ per channel.
         intensity: Rgb,
+        /// How far it shines: light is faded out by 1 − (distance / range)⁴. Infinite for light that is not.
+        range: f32,
         /// Where it was described.
         span: Span,
     },
@@ -83,8 +94,12 @@ pub enum LightDesc {
         intensity: Rgb,
         /// Angle from the axis beyond which nothing is emitted, in radians.
         cutoff_angle: f32,
-        /// Angle from the axis up to which the intensity is full, in radians; it falls off linearly in between.
+        /// Angle from the axis up to which the intensity is full, in radians.
         beam_width: f32,
+        /// How it falls off in between.
+        falloff: SpotFalloff,
+        /// How far it shines, as of a point.
+        range: f32,
         /// Projected image, looked up over the cone's bounding square.
         texture: Option<TextureId>,
         /// Where it was described.

@@ -314,6 +314,10 @@ pub struct MetallicRoughnessDesc {
     pub transmission: ScalarInput,
     /// Is it a thin sheet, which does not bend light?
     pub thin: bool,
+    /// Of a thin sheet's diffuse light, how much comes out on the other side.
+    pub diffuse_transmission: ScalarInput,
+    /// Its colour there.
+    pub diffuse_transmission_color: ColorInput,
     /// Stretches highlights.
     pub anisotropy: ScalarInput,
     /// Along which direction from the tangent, in radians.

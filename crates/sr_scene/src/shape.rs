@@ -74,6 +74,9 @@ pub enum Geometry {
     Curves(Arc<CurvesDesc>),
 }
 
+/// A mesh has at most so many sets of texture coordinates, the first one counted.
+pub const MAX_UV_SETS: u32 = 4;
+
 /// A triangle mesh. Per-vertex arrays are empty or as long as `positions`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeshDesc {
@@ -85,6 +88,8 @@ pub struct MeshDesc {
     pub normals: Vec<Vec3>,
     /// Vertex texture coordinates; empty: barycentric coordinates of each triangle.
     pub uvs: Vec<Vec2>,
+    /// Further sets of texture coordinates, for [`crate::TextureDesc::OtherUvs`].
+    pub further_uvs: Vec<Vec<Vec2>>,
     /// Vertex indices, counter-clockwise seen from the front.
     pub triangles: Vec<[u32; 3]>,
     /// Colours of the vertices, for [`crate::TextureDesc::MeshColor`]; may be empty.

@@ -54,6 +54,15 @@ pub enum TextureDesc {
         /// Where it was described.
         span: Span,
     },
+    /// A color at another set of its mesh's texture coordinates; at the first one on what has no such set.
+    OtherUvs {
+        /// The color.
+        input: ColorInput,
+        /// 1: the first of [`crate::MeshDesc::further_uvs`]. Less than [`crate::MAX_UV_SETS`].
+        set: u32,
+        /// Where it was described.
+        span: Span,
+    },
     /// The colours of the mesh that it is on; grey (0.5) on what has none. Lights cannot have it.
     MeshColor {
         /// Which of them.

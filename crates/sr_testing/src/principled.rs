@@ -88,6 +88,16 @@ fn metallic_roughness() -> Vec<(String, AnyBsdf<'static>)> {
         ("pane", glass),
         ("glass", MetallicRoughnessInputs { is_thin: false, ..glass }),
         (
+            "leaf",
+            MetallicRoughnessInputs {
+                diffuse_transmission: 0.6,
+                diffuse_transmission_color: PINK,
+                transmission: 0.2,
+                clearcoat: 0.3,
+                ..plastic
+            },
+        ),
+        (
             "all",
             MetallicRoughnessInputs {
                 metallic: 0.3,

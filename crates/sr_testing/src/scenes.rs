@@ -9,7 +9,7 @@ use glam::{Mat3, Mat4, Vec2, Vec3};
 use sr_scene::{
     CameraDesc, ColorInput, Emission, FilmDesc, FilterDesc, FovAxis, Geometry, Image, LightDesc,
     MaterialDesc, MaterialId, MeshDesc, Pixels, Projection, Rgb, SceneDesc, Settings, ShapeDesc, Span,
-    SphereMapping,
+    SphereMapping, SpotFalloff,
 };
 
 /// A scene and its answer.
@@ -69,6 +69,7 @@ pub fn diffuse_scene(camera: CameraDesc, albedo: f32) -> SceneDesc {
         groups: Vec::new(),
         instances: Vec::new(),
         lights: Vec::new(),
+        variants: Vec::new(),
     }
 }
 
@@ -358,6 +359,7 @@ fn skies() -> Vec<KnownScene> {
             desc.lights.push(LightDesc::Point {
                 position: Vec3::new(0.3, 0.4, 1.2),
                 intensity: Rgb::splat(5.0),
+                range: f32::INFINITY,
                 span: Span::default(),
             });
         }),
@@ -376,6 +378,8 @@ fn skies() -> Vec<KnownScene> {
                 intensity: Rgb::splat(2.0),
                 cutoff_angle: 0.4,
                 beam_width: 0.3,
+                falloff: SpotFalloff::Linear,
+                range: f32::INFINITY,
                 texture: None,
                 span: Span::default(),
             });

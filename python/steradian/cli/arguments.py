@@ -277,6 +277,11 @@ def _add_scene(parser: argparse.ArgumentParser) -> None:
         type=_folder,
         help="where to look for files that are neither beside the scene nor where it says; may be repeated",
     )
+    parser.add_argument(
+        "--variant",
+        metavar="NAME",
+        help="which of the scene's sets of materials is shown, where a glTF file has several",
+    )
     parser.add_argument("--strict", action="store_true", help="fail on warnings about the scene, too")
 
 

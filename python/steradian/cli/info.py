@@ -46,6 +46,8 @@ def describe(values: dict[str, Any]) -> str:
         ("loaded in", f"{values['load_seconds']:.2f} s"),
         ("warnings", str(len(values["diagnostics"]))),
     ]
+    if values["variants"]:
+        rows.insert(-3, ("variants", ", ".join(values["variants"])))
     return "\n".join(f"{name:10} {text}" for name, text in rows)
 
 

@@ -17,6 +17,7 @@ def load(arguments: argparse.Namespace) -> Scene | None:
         defines=dict(arguments.define),
         search_paths=arguments.search_path,
         environment=arguments.environment,
+        variant=arguments.variant,
         threads=getattr(arguments, "threads", None),
         color=sys.stderr.isatty() and not os.environ.get("NO_COLOR"),
     )

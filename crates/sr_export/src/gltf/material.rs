@@ -40,6 +40,8 @@ const PLAIN: MetallicRoughnessDesc = MetallicRoughnessDesc {
     sheen_roughness: NONE,
     transmission: NONE,
     thin: true,
+    diffuse_transmission: NONE,
+    diffuse_transmission_color: WHITE,
     anisotropy: NONE,
     anisotropy_rotation: 0.0,
 };
@@ -188,6 +190,14 @@ impl Writer<'_> {
             self.scalar(&mut list, names, desc.sheen_roughness, 3, span);
             extensions.push(("KHR_materials_sheen", Json::Object(list)));
         }
+        if desc.diffuse_transmission != NONE {
+            let mut list: Members = Vec::new();
+            let names = ("diffuseTransmissionFactor", "diffuseTransmissionTexture");
+            self.scalar(&mut list, names, desc.diffuse_transmission, 3, span);
+            let names = ("diffuseTransmissionColorFactor", "diffuseTransmissionColorTexture");
+            self.color(&mut list, names, desc.diffuse_transmission_color, span);
+            extensions.push(("KHR_materials_diffuse_transmission", Json::Object(list)));
+        }
         if desc.anisotropy != NONE {
             if matches!(desc.anisotropy, ScalarInput::Texture(_)) {
                 let message = "an anisotropy that varies over a surface";
@@ -257,7 +267,10 @@ impl Writer<'_> {
                 diffuse(*reflectance)
             }
             MaterialDesc::DiffuseTransmission { reflectance, .. } => {
-                approximated("diffuse transmission", "diffuse reflection is written, nothing passes");
+                approximated(
+                    "diffuse transmission of two shares",
+                    "diffuse reflection is written, nothing passes",
+                );
                 return Surface { has_back: true, ..Surface::of(diffuse(*reflectance)) };
             }
             MaterialDesc::Dielectric { eta, specular_reflectance, specular_transmittance } => {

@@ -49,11 +49,12 @@ struct Writer<'a> {
 }
 
 /// The accessors of a mesh.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 struct Attributes {
     positions: usize,
     normals: Option<usize>,
     uvs: Option<usize>,
+    further_uvs: Vec<usize>,
     colors: Option<usize>,
     indices: usize,
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::{Mat4, Quat, Vec3};
-use sr_scene::{LightDesc, MeshDesc, Projection, Rgb, ShapeDesc, Span};
+use sr_scene::{LightDesc, MeshDesc, Projection, Rgb, ShapeDesc, Span, SpotFalloff, TextureDesc};
 
 use super::json::Json;
 use super::{Attributes, Writer, emission_key};
@@ -88,8 +88,8 @@ impl Writer<'_> {
                 lost(self, "light around the scene", span);
             }
             LightDesc::Sky { span, .. } => lost(self, "sky", span),
-            LightDesc::Point { position, intensity, .. } => {
-                self.punctual("point", *intensity, Vec::new(), (Quat::IDENTITY, *position));
+            LightDesc::Point { position, intensity, range, .. } => {
+                self.punctual("point", *intensity, ranged(*range), (Quat::IDENTITY, *position));
             }
             LightDesc::Directional { direction, irradiance, .. } => {
                 self.punctual("directional", *irradiance, Vec::new(), (along(*direction), Vec3::ZERO));
@@ -104,7 +104,20 @@ impl Writer<'_> {
                 let irradiance = probe.radiance(towards) * solid_angle;
                 self.punctual("directional", irradiance, Vec::new(), (along(-towards), Vec3::ZERO));
             }
-            LightDesc::Spot { world_from_light, intensity, cutoff_angle, beam_width, texture, span } => {
+            LightDesc::Spot {
+                world_from_light,
+                intensity,
+                cutoff_angle,
+                beam_width,
+                falloff,
+                range,
+                texture,
+                span,
+            } => {
+                if *falloff == SpotFalloff::Linear && beam_width < cutoff_angle {
+                    let message = "glTF's spot lights fall off by the square of a cosine";
+                    self.notes.push("convert::light", span, message, "it does so within the same angles");
+                }
                 if texture.is_some() {
                     let message = "glTF's spot lights have no texture";
                     self.notes.push("convert::light", span, message, "it is evenly bright");
@@ -123,7 +136,8 @@ impl Writer<'_> {
                 ]);
                 let axis = world_from_light.transform_vector3(Vec3::Z).normalize_or(Vec3::Z);
                 let place = world_from_light.w_axis.truncate();
-                self.punctual("spot", *intensity, vec![("spot", spot)], (along(axis), place));
+                let members = ranged(*range).into_iter().chain([("spot", spot)]).collect();
+                self.punctual("spot", *intensity, members, (along(axis), place));
             }
             LightDesc::Projector { world_from_light, span, .. }
             | LightDesc::Goniometric { world_from_light, span, .. }
@@ -231,10 +245,12 @@ impl Writer<'_> {
                 self.materials.len() - 1
             }
         };
-        let Attributes { positions, normals, uvs, colors, indices } = self.attributes(&mesh);
+        let Attributes { positions, normals, uvs, further_uvs, colors, indices } = self.attributes(&mesh);
         let mut attributes = vec![("POSITION", Json::Integer(positions))];
         attributes.extend(normals.map(|at| ("NORMAL", Json::Integer(at))));
         attributes.extend(uvs.map(|at| ("TEXCOORD_0", Json::Integer(at))));
+        let names = ["TEXCOORD_1", "TEXCOORD_2", "TEXCOORD_3"];
+        attributes.extend(names.into_iter().zip(further_uvs).map(|(name, at)| (name, Json::Integer(at))));
         // Colors multiply the base: only where a texture asks for them.
         let wants_colors = self.colored.contains(&shape.material);
         attributes.extend(colors.filter(|_| wants_colors).map(|at| ("COLOR_0", Json::Integer(at))));
@@ -248,25 +264,41 @@ impl Writer<'_> {
     /// The accessors of positions, normals, texture coordinates, colors and corners.
     fn attributes(&mut self, mesh: &Arc<MeshDesc>) -> Attributes {
         let key = Arc::as_ptr(mesh).addr();
-        if let Some(&known) = self.known_meshes.get(&key) {
-            return known;
+        if let Some(known) = self.known_meshes.get(&key) {
+            return known.clone();
         }
         let positions = self.buffer.positions(&mesh.positions);
         // Unit length is asked for.
         let unit: Vec<Vec3> = mesh.normals.iter().map(|n| n.normalize_or(Vec3::Z)).collect();
         let normals = (!unit.is_empty()).then(|| self.buffer.vectors(&unit));
         let uvs = (!mesh.uvs.is_empty()).then(|| self.buffer.uvs(&mesh.uvs));
+        // A set that the mesh does not have is its first one, if a texture of the scene asks for it.
+        let asked = self.scene.textures.iter().map(|texture| match texture {
+            TextureDesc::OtherUvs { set, .. } => *set as usize,
+            _ => 0,
+        });
+        let further = asked.max().unwrap_or(0).max(mesh.further_uvs.len());
+        let of_set = |set: usize| mesh.further_uvs.get(set).filter(|set| !set.is_empty());
+        let mut further_uvs = Vec::new();
+        if let Some(first) = uvs {
+            further_uvs.extend((0..further).map(|set| of_set(set).map_or(first, |set| self.buffer.uvs(set))));
+        }
         let colors = (!mesh.vertex_colors.is_empty()).then(|| {
             let colors: Vec<Vec3> =
                 mesh.vertex_colors.iter().map(|c| c.clamp(Vec3::ZERO, Vec3::ONE)).collect();
             self.buffer.vectors(&colors)
         });
         let indices = self.buffer.indices(&mesh.triangles);
-        let known = Attributes { positions, normals, uvs, colors, indices };
-        self.known_meshes.insert(key, known);
+        let known = Attributes { positions, normals, uvs, further_uvs, colors, indices };
+        self.known_meshes.insert(key, known.clone());
         self.made.push(mesh.clone());
         known
     }
+}
+
+/// How far a light shines, if not for ever.
+fn ranged(range: f32) -> Vec<(&'static str, Json)> {
+    if range.is_finite() { vec![("range", Json::Number(range))] } else { Vec::new() }
 }
 
 /// A rotation of −Z to a direction.

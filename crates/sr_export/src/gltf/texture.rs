@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::{Affine2, Mat2, Vec2};
-use sr_scene::{Filter, Image, Pixels, Rgb, Span, TextureDesc, TextureId, Wrap};
+use sr_scene::{ColorInput, Filter, Image, Pixels, Rgb, Span, TextureDesc, TextureId, Wrap};
 
 use super::json::Json;
 use super::{Writer, uri};
@@ -21,6 +21,8 @@ pub(super) struct Placed {
     filter: Filter,
     wrap: Wrap,
     to_uv: Affine2,
+    /// Of texture coordinates.
+    set: u32,
 }
 
 /// What the channels of an image are made from.
@@ -52,6 +54,7 @@ impl Writer<'_> {
         let is_alike = |other: &Option<Placed>| match (&first, other) {
             (Some(a), Some(b)) => {
                 a.to_uv == b.to_uv
+                    && a.set == b.set
                     && a.wrap == b.wrap
                     && (a.image.width, a.image.height) == (b.image.width, b.image.height)
             }
@@ -72,6 +75,9 @@ impl Writer<'_> {
         let colors: Vec<Vec<Rgb>> = (0..parts.len()).map(texels).collect();
         let index = self.image_texture(&key, size, &colors, channels, (place.filter, place.wrap));
         let mut info = vec![("index", Json::Integer(index))];
+        if place.set > 0 {
+            info.push(("texCoord", Json::Integer(place.set as usize)));
+        }
         if let Some(transform) = transform(place.to_uv).filter(|list| !list.is_empty()) {
             self.extensions.insert("KHR_texture_transform");
             let transform = ("KHR_texture_transform", Json::Object(transform));
@@ -89,7 +95,11 @@ impl Writer<'_> {
                 filter: *filter,
                 wrap: *wrap,
                 to_uv: *to_uv,
+                set: 0,
             }),
+            TextureDesc::OtherUvs { input: ColorInput::Texture(input), set, .. } => {
+                self.placed(*input).map(|placed| Placed { set: *set, ..placed })
+            }
             _ => None,
         }
     }

@@ -2,7 +2,7 @@
 
 use glam::{Mat3, Mat4, Vec3};
 use sr_render::light::Probe;
-use sr_scene::{FovAxis, LightDesc, Rgb, SphereMapping};
+use sr_scene::{FovAxis, LightDesc, Rgb, Span, SphereMapping, SpotFalloff};
 
 use super::Writer;
 use super::xml::Xml;
@@ -24,14 +24,31 @@ impl Writer<'_> {
                 xml.end();
             }
             LightDesc::Environment { .. } => self.environment(xml, light),
-            LightDesc::Point { position, intensity, .. } => point(xml, *position, *intensity),
+            LightDesc::Point { position, intensity, range, span } => {
+                self.notes_on_range(*range, span);
+                point(xml, *position, *intensity);
+            }
             LightDesc::Directional { direction, irradiance, .. } => {
                 xml.begin("emitter", &[("type", "directional")]);
                 xml.vector("vector", "direction", *direction);
                 xml.rgb("irradiance", *irradiance);
                 xml.end();
             }
-            LightDesc::Spot { world_from_light, intensity, cutoff_angle, beam_width, texture, .. } => {
+            LightDesc::Spot {
+                world_from_light,
+                intensity,
+                cutoff_angle,
+                beam_width,
+                falloff,
+                range,
+                texture,
+                span,
+            } => {
+                self.notes_on_range(*range, span);
+                if *falloff == SpotFalloff::SquaredCosine && beam_width < cutoff_angle {
+                    let message = "Mitsuba's spot lights fall off linearly with the angle";
+                    self.notes.push("convert::light", span, message, "it does so within the same angles");
+                }
                 let texture = texture.and_then(|id| self.texture(id));
                 xml.begin("emitter", &[("type", "spot")]);
                 xml.rgb("intensity", *intensity);
@@ -103,6 +120,14 @@ impl Writer<'_> {
                 xml.float("sun_aperture", aperture.to_degrees());
                 xml.end();
             }
+        }
+    }
+
+    /// Mitsuba's lights have no range.
+    fn notes_on_range(&mut self, range: f32, span: &Span) {
+        if range.is_finite() {
+            let message = "Mitsuba's lights have no range";
+            self.notes.push("convert::light", span, message, "it falls off with the square of the distance");
         }
     }
 

@@ -423,12 +423,14 @@ impl Writer<'_> {
             ("clearcoat_roughness", m.clearcoat_roughness),
             ("sheen_roughness", m.sheen_roughness),
             ("transmission", m.transmission),
+            ("diffuse_transmission", m.diffuse_transmission),
             ("anisotropy", m.anisotropy),
         ] {
             self.number(xml, name, input);
         }
         self.color(xml, "specular_color", m.specular_color);
         self.color(xml, "sheen_color", m.sheen_color);
+        self.factor(xml, "diffuse_transmission_color", m.diffuse_transmission_color);
         xml.float("ior", m.ior);
         xml.boolean("thin", m.thin);
         xml.float("anisotropy_rotation", m.anisotropy_rotation.to_degrees());

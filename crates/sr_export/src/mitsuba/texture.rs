@@ -86,6 +86,12 @@ impl Writer<'_> {
                 xml.end();
             }
             TextureDesc::Mix { span, .. } => self.baked(&mut xml, &name, id, span, "texture \"mix\""),
+            TextureDesc::OtherUvs { input, span, .. } => {
+                let message = "Mitsuba's meshes have one set of texture coordinates";
+                self.notes.push("convert::texture-coordinates", span, message, "the first one is used");
+                let ColorInput::Texture(input) = *input else { return None };
+                return self.texture(input);
+            }
             TextureDesc::MeshColor { of, scale, .. } => {
                 xml.begin("texture", &[("type", "mesh_attribute"), ("id", &name)]);
                 let attribute = match of {

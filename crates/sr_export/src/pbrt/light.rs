@@ -2,7 +2,7 @@
 
 use glam::{Mat4, Vec3};
 use sr_render::light::Probe;
-use sr_scene::{ColorInput, LightDesc, Rgb, Span, SphereMapping};
+use sr_scene::{ColorInput, LightDesc, Rgb, Span, SphereMapping, SpotFalloff};
 
 use super::Writer;
 use super::text::{Params, Text};
@@ -24,6 +24,12 @@ impl Writer<'_> {
     }
 
     fn light(&mut self, text: &mut Text, light: &LightDesc) {
+        if let LightDesc::Point { range, span, .. } | LightDesc::Spot { range, span, .. } = light
+            && range.is_finite()
+        {
+            let message = "pbrt's lights have no range";
+            self.notes.push("convert::light", span, message, "it falls off with the square of the distance");
+        }
         match light {
             LightDesc::Constant { radiance, .. } => {
                 text.directive("LightSource", "infinite", &Params::default().rgb("L", *radiance));
@@ -46,10 +52,13 @@ impl Writer<'_> {
                     .float("conedeltaangle", 0.0);
                 text.directive("LightSource", "spot", &params);
             }
-            LightDesc::Spot { world_from_light, span, texture, .. } => {
-                let what = match texture {
-                    Some(_) => "spot light with a texture",
-                    None => "spot light that falls off linearly",
+            LightDesc::Spot { world_from_light, span, texture, falloff, .. } => {
+                let what = match (texture, falloff) {
+                    (Some(_), _) => "spot light with a texture",
+                    (None, SpotFalloff::Linear) => "spot light that falls off linearly",
+                    (None, SpotFalloff::SquaredCosine) => {
+                        "spot light that falls off by the square of a cosine"
+                    }
                 };
                 self.goniometric(text, light, world_from_light, (what, span));
             }

@@ -155,6 +155,13 @@ impl Writer<'_> {
                 self.definitions.texture(name, kind, "mix", &params);
             }
             TextureDesc::Scale { span, .. } => self.product(name, kind, id, wanted, span),
+            TextureDesc::OtherUvs { input, span, .. } => {
+                let message = "pbrt's meshes have one set of texture coordinates";
+                self.notes.push("convert::texture-coordinates", span, message, "the first one is used");
+                if let ColorInput::Texture(input) = *input {
+                    self.describe(name, input, wanted);
+                }
+            }
             TextureDesc::MeshColor { scale, span, .. } => {
                 let message = "pbrt does not use colors of meshes";
                 self.notes.push("convert::texture", span, message, "grey is written");

@@ -48,6 +48,8 @@ pub struct Assembly<'d> {
     pub instances: Vec<InstanceDesc>,
     /// Lights that are not shapes.
     pub lights: Vec<LightDesc>,
+    /// Names of the sets of materials that the file has.
+    pub variants: Vec<String>,
     /// An image of latitude and longitude, +Y up, that the scene does not name and is lit by.
     pub environment: Option<PathBuf>,
     images: Vec<ImageSlot>,
@@ -71,6 +73,7 @@ impl<'d> Assembly<'d> {
             groups: Vec::new(),
             instances: Vec::new(),
             lights: Vec::new(),
+            variants: Vec::new(),
             environment: None,
             images: Vec::new(),
             image_files: HashMap::new(),
@@ -199,6 +202,7 @@ impl<'d> Assembly<'d> {
             groups: self.groups,
             instances: self.instances,
             lights: self.lights,
+            variants: self.variants,
         };
         if self.d.has_errors() {
             return None;

@@ -35,17 +35,29 @@ impl Stored {
         }
     }
 
+    /// What whole numbers count to.
+    fn largest(self) -> f64 {
+        match self {
+            Self::I8 => 127.0,
+            Self::U8 => 255.0,
+            Self::I16 => 32767.0,
+            Self::U16 => 65535.0,
+            Self::U32 => f64::from(u32::MAX),
+            Self::F32 => 1.0,
+        }
+    }
+
     /// Whole numbers count to the largest of their kind if `normalized`.
     fn read(self, b: &[u8], normalized: bool) -> f64 {
-        let (value, largest) = match self {
-            Self::I8 => (f64::from(b[0].cast_signed()), 127.0),
-            Self::U8 => (f64::from(b[0]), 255.0),
-            Self::I16 => (f64::from(i16::from_le_bytes([b[0], b[1]])), 32767.0),
-            Self::U16 => (f64::from(u16::from_le_bytes([b[0], b[1]])), 65535.0),
-            Self::U32 => (f64::from(u32::from_le_bytes([b[0], b[1], b[2], b[3]])), f64::from(u32::MAX)),
+        let value = match self {
+            Self::I8 => f64::from(b[0].cast_signed()),
+            Self::U8 => f64::from(b[0]),
+            Self::I16 => f64::from(i16::from_le_bytes([b[0], b[1]])),
+            Self::U16 => f64::from(u16::from_le_bytes([b[0], b[1]])),
+            Self::U32 => f64::from(u32::from_le_bytes([b[0], b[1], b[2], b[3]])),
             Self::F32 => return f64::from(f32::from_le_bytes([b[0], b[1], b[2], b[3]])),
         };
-        if normalized { (value / largest).max(-1.0) } else { value }
+        if normalized { (value / self.largest()).max(-1.0) } else { value }
     }
 }
 
@@ -87,6 +99,12 @@ impl Document<'_, '_> {
     /// Whole numbers, as indices are.
     pub fn indices(&mut self, index: &Value) -> Option<Vec<u32>> {
         self.rows(index, &[1]).map(|rows| rows.data.iter().map(|&v| v as u32).collect())
+    }
+
+    /// What the whole numbers of an accessor are divided by, if they are normalized.
+    pub fn normalized_to(&self, accessor: &Value) -> Option<f64> {
+        let stored = accessor.get("componentType").and_then(Value::index).and_then(Stored::of);
+        stored.filter(|_| accessor.get("normalized").is_some_and(Value::is_true)).map(Stored::largest)
     }
 
     fn try_rows(&mut self, accessor: &Value, widths: &[usize]) -> Result<Option<Rows>, String> {

@@ -19,15 +19,15 @@ pub struct Document<'v, 'd> {
     pub out: Assembly<'d>,
     binary: Option<Rc<[u8]>>,
     buffers: HashMap<usize, Option<Rc<[u8]>>>,
+    /// Buffer views whose bytes were packed.
+    unpacked: HashMap<usize, Option<Rc<[u8]>>>,
     /// How many numbers may still be read.
     pub budget: usize,
     pub images: image::Images,
     pub materials: HashMap<material::Key, material::Surface>,
     pub meshes: HashMap<geometry::Key, Option<geometry::Part>>,
-    /// Where a mesh is packed by what is not unpacked here.
-    pub packed: Option<Span>,
-    /// How many primitives are shown, somewhere.
-    pub shapes: usize,
+    /// Which of the variants of the materials is shown.
+    pub variant: Option<usize>,
     /// Does a surface emit more than white does, by KHR_materials_emissive_strength?
     pub strong_emission: bool,
     /// Codes and places of what was said already.
@@ -41,12 +41,12 @@ impl<'v, 'd> Document<'v, 'd> {
             out,
             binary: binary.map(Rc::from),
             buffers: HashMap::new(),
+            unpacked: HashMap::new(),
             budget: MAX_NUMBERS,
             images: image::Images::default(),
             materials: HashMap::new(),
             meshes: HashMap::new(),
-            packed: None,
-            shapes: 0,
+            variant: None,
             strong_emission: false,
             said: HashSet::new(),
         }
@@ -138,10 +138,7 @@ impl<'v, 'd> Document<'v, 'd> {
     pub fn view(&mut self, index: &Value) -> Option<View> {
         let view = self.item("bufferViews", index)?;
         if let Some(packed) = view.extension("EXT_meshopt_compression") {
-            let message =
-                "EXT_meshopt_compression is not unpacked; save the file without it (gltfpack without -c)";
-            self.error("gltf::compressed", &packed.span, message);
-            return None;
+            return self.unpacked(index.index()?, packed);
         }
         let Some(buffer) = view.get("buffer") else {
             self.error("gltf::bad-view", &view.span, "the buffer view names no buffer");
@@ -159,6 +156,20 @@ impl<'v, 'd> Document<'v, 'd> {
             return None;
         };
         Some(View { bytes, start, length, stride: whole("byteStride").filter(|&stride| stride > 0) })
+    }
+
+    /// The same of a view whose bytes are packed; each is unpacked once.
+    fn unpacked(&mut self, key: usize, packed: &Value) -> Option<View> {
+        if !self.unpacked.contains_key(&key) {
+            let bytes = self.meshopt(packed).map_err(|reason| {
+                let message = format!("the buffer view that meshopt packed cannot be read: {reason}");
+                self.error("gltf::meshopt", &packed.span, message);
+            });
+            self.unpacked.insert(key, bytes.ok().map(Rc::from));
+        }
+        let bytes = self.unpacked.get(&key)?.clone()?;
+        let stride = packed.get("byteStride").and_then(Value::index);
+        Some(View { start: 0, length: bytes.len(), bytes, stride })
     }
 }
 

@@ -32,19 +32,19 @@ impl fmt::Display for Support {
 
 /// Every extension that this crate has heard of.
 pub const EXTENSIONS: &[(&str, Support)] = &[
-    ("EXT_lights_image_based", Reported("the default light is used where there is no other")),
+    ("EXT_lights_image_based", Done),
     ("EXT_mesh_gpu_instancing", Done),
-    ("EXT_meshopt_compression", Reported("what is packed in it alone cannot be read")),
+    ("EXT_meshopt_compression", Done),
     ("EXT_texture_webp", Done),
     ("KHR_animation_pointer", Reported("the scene is shown as it stands without animation")),
-    ("KHR_draco_mesh_compression", Reported("what is packed in it alone cannot be read")),
-    (
-        "KHR_lights_punctual",
-        Approximated("spots fall off linearly by the angle; a range does not cut light off"),
-    ),
+    ("KHR_draco_mesh_compression", Done),
+    ("KHR_lights_punctual", Done),
     ("KHR_materials_anisotropy", Approximated("one direction for a whole texture, its mean")),
-    ("KHR_materials_clearcoat", Approximated("the coat has the normals of the base")),
-    ("KHR_materials_diffuse_transmission", Reported("the surface is opaque")),
+    (
+        "KHR_materials_clearcoat",
+        Approximated("the coat has the normals of the base; where its own differ, that is said"),
+    ),
+    ("KHR_materials_diffuse_transmission", Approximated("bodies are thin sheets; nothing scatters inside")),
     ("KHR_materials_dispersion", Reported("all wavelengths bend alike")),
     ("KHR_materials_emissive_strength", Done),
     ("KHR_materials_ior", Done),
@@ -54,10 +54,10 @@ pub const EXTENSIONS: &[(&str, Support)] = &[
     ("KHR_materials_specular", Done),
     ("KHR_materials_transmission", Done),
     ("KHR_materials_unlit", Approximated("as an emitter that reflects nothing")),
-    ("KHR_materials_variants", Reported("the variant that is set by default is shown")),
+    ("KHR_materials_variants", Done),
     ("KHR_materials_volume", Approximated("attenuation colors the surface, by the stated thickness")),
     ("KHR_mesh_quantization", Done),
-    ("KHR_texture_basisu", Reported("the other image of the texture is used, if there is one")),
+    ("KHR_texture_basisu", Done),
     ("KHR_texture_transform", Done),
     ("KHR_xmp_json_ld", Done),
 ];

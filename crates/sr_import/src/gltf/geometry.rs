@@ -3,11 +3,13 @@
 use std::sync::Arc;
 
 use glam::{DMat4, Vec2, Vec3};
-use sr_scene::{MeshDesc, Span};
+use sr_scene::{MAX_UV_SETS, MeshDesc, Span};
 
 use super::document::Document;
+use super::draco::Unpacked;
 use super::json::Value;
 use super::material::Surface;
+use super::texture::Sets;
 
 /// Mesh, primitive, and the node if it bends the mesh.
 pub type Key = (usize, usize, Option<usize>);
@@ -73,36 +75,40 @@ impl Document<'_, '_> {
             self.warn("gltf::no-positions", &primitive.span, message, "it is left out");
             return None;
         };
-        if let Some(packed) = primitive.extension("KHR_draco_mesh_compression")
-            && self.item("accessors", position)?.get("bufferView").is_none()
-        {
-            // That it cannot be read is said for all meshes together.
-            self.packed = Some(packed.span.clone());
-            return None;
-        }
+        let packed = match self.unpack(primitive) {
+            Some(None) => return None,
+            packed => packed.flatten(),
+        };
+        let packed = packed.as_ref();
         let mut mesh = MeshDesc { name: name.to_owned(), ..MeshDesc::default() };
-        mesh.positions = self.rows(position, &[3])?.of(0.0).map(Vec3::from).collect();
+        mesh.positions =
+            self.attribute(packed, "POSITION", position, &[3])?.of(0.0).map(Vec3::from).collect();
         let count = mesh.positions.len();
         if let Some(normal) = attributes.get("NORMAL") {
-            mesh.normals = self.rows(normal, &[3])?.of(0.0).map(Vec3::from).collect();
+            mesh.normals = self.attribute(packed, "NORMAL", normal, &[3])?.of(0.0).map(Vec3::from).collect();
         }
         if let Some(color) = attributes.get("COLOR_0") {
-            let rows = self.rows(color, &[3, 4])?;
+            let rows = self.attribute(packed, "COLOR_0", color, &[3, 4])?;
             if rows.width == 4 && rows.iter().any(|row| row[3] != 1.0) {
                 let message = "the opacity of vertices is not shown";
                 self.warn_once("gltf::vertex-opacity", &color.span, message, "their colors are");
             }
             mesh.vertex_colors = rows.of(1.0).map(|c| Vec3::from_array(c).max(Vec3::ZERO)).collect();
         }
-        let surface = self.surface(primitive.get("material"), !mesh.vertex_colors.is_empty());
-        if let Some(uv) = attributes.get(&format!("TEXCOORD_{}", surface.set)) {
-            mesh.uvs = self.rows(uv, &[2])?.of(0.0).map(|[u, v]| Vec2::new(u, 1.0 - v)).collect();
-        }
+        let surface = self.surface(self.material_of(primitive), !mesh.vertex_colors.is_empty());
+        let uvs = self.uvs(primitive, attributes, packed, &surface.sets)?;
+        let mut uvs = uvs.into_iter();
+        mesh.uvs = uvs.next().unwrap_or_default();
+        mesh.further_uvs = uvs.collect();
         if let Some(targets) = primitive.get("targets") {
             self.morph(targets.list(), weights, &mut mesh);
         }
         if let Some(joints) = joints {
-            self.skin(attributes, joints, &mut mesh);
+            self.skin(attributes, packed, joints, &mut mesh);
+        }
+        if let Some(packed) = packed {
+            mesh.triangles = packed.triangles.clone();
+            return Some(Part { mesh: Arc::new(mesh), surface, span: primitive.span.clone() });
         }
         let corners = match primitive.get("indices") {
             Some(indices) => self.indices(indices)?,
@@ -114,6 +120,32 @@ impl Document<'_, '_> {
             _ => corners.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
         };
         Some(Part { mesh: Arc::new(mesh), surface, span: primitive.span.clone() })
+    }
+
+    /// The sets of texture coordinates that a material takes; empty where the primitive does not have them.
+    fn uvs(
+        &mut self,
+        primitive: &Value,
+        attributes: &Value,
+        packed: Option<&Unpacked>,
+        sets: &Sets,
+    ) -> Option<Vec<Vec<Vec2>>> {
+        let mut all = Vec::new();
+        for (at, set) in sets.used.iter().take(MAX_UV_SETS as usize).enumerate() {
+            let name = format!("TEXCOORD_{set}");
+            let Some(uv) = attributes.get(&name) else {
+                if sets.any {
+                    let message = format!("the primitive has no {name}, which its textures take");
+                    let instead = if at == 0 { "each triangle has its own" } else { "another set is used" };
+                    self.warn("gltf::no-coordinates", &primitive.span, message, instead);
+                }
+                all.push(Vec::new());
+                continue;
+            };
+            let rows = self.attribute(packed, &name, uv, &[2])?;
+            all.push(rows.of(0.0).map(|[u, v]| Vec2::new(u, 1.0 - v)).collect());
+        }
+        Some(all)
     }
 }
 

@@ -45,33 +45,18 @@ impl Default for Images {
     }
 }
 
-impl Document<'_, '_> {
+impl<'v> Document<'v, '_> {
     /// Decodes every image that a texture shows.
     pub fn load_images(&mut self) {
         let mut encoded: Vec<(usize, String, Vec<u8>, &Value)> = Vec::new();
         for texture in self.root.get("textures").map_or(&[][..], Value::list) {
             let Some(source) = source(texture) else { continue };
-            let (Some(image), Some(index)) = (self.item("images", source), source.index()) else { continue };
+            let Some(index) = source.index() else { continue };
             if encoded.iter().any(|(known, ..)| *known == index) {
                 continue;
             }
-            let name = image.get("uri").or(image.get("name")).and_then(Value::text).unwrap_or("");
-            let name = if name.starts_with("data:") || name.is_empty() {
-                format!("images[{index}]")
-            } else {
-                name.to_owned()
-            };
-            let bytes = match (image.get("uri").and_then(Value::text), image.get("bufferView")) {
-                (Some(uri), _) => container::fetch(uri, |name| self.out.find(name)),
-                (None, Some(view)) => match self.view(view) {
-                    Some(view) => Ok(view.bytes().to_vec()),
-                    None => continue,
-                },
-                (None, None) => Err("it names no file".into()),
-            };
-            match bytes {
-                Ok(bytes) => encoded.push((index, name, bytes, image)),
-                Err(reason) => self.bad_image(image, &name, &reason),
+            if let Some((name, bytes, image)) = self.encoded_image(source) {
+                encoded.push((index, name, bytes, image));
             }
         }
         encoded.retain(|(_, name, bytes, image)| {
@@ -99,7 +84,30 @@ impl Document<'_, '_> {
         }
     }
 
-    fn bad_image(&mut self, image: &Value, name: &str, reason: &str) {
+    /// An image of the file as it is encoded: what to call it, its bytes, and where it is described.
+    pub fn encoded_image(&mut self, index: &Value) -> Option<(String, Vec<u8>, &'v Value)> {
+        let image = self.item("images", index)?;
+        let name = image.get("uri").or(image.get("name")).and_then(Value::text).unwrap_or("");
+        let name = if name.starts_with("data:") || name.is_empty() {
+            format!("images[{}]", index.index()?)
+        } else {
+            name.to_owned()
+        };
+        let bytes = match (image.get("uri").and_then(Value::text), image.get("bufferView")) {
+            (Some(uri), _) => container::fetch(uri, |name| self.out.find(name)),
+            (None, Some(view)) => Ok(self.view(view)?.bytes().to_vec()),
+            (None, None) => Err("it names no file".into()),
+        };
+        match bytes {
+            Ok(bytes) => Some((name, bytes, image)),
+            Err(reason) => {
+                self.bad_image(image, &name, &reason);
+                None
+            }
+        }
+    }
+
+    pub fn bad_image(&mut self, image: &Value, name: &str, reason: &str) {
         let message = format!("cannot read the image {}: {reason}", crate::values::shown(name));
         self.error("file::bad-image", &image.span, message);
     }
@@ -136,13 +144,14 @@ impl Document<'_, '_> {
     }
 }
 
-/// The image that a texture shows: one that is read before one that is not.
+/// The image that a texture shows: that of an extension before that for those who do not know it.
 pub fn source(texture: &Value) -> Option<&Value> {
-    let webp = texture.extension("EXT_texture_webp").and_then(|webp| webp.get("source"));
-    webp.or_else(|| texture.get("source"))
+    let packed = ["EXT_texture_webp", "KHR_texture_basisu"];
+    let packed = packed.into_iter().find_map(|name| texture.extension(name)?.get("source"));
+    packed.or_else(|| texture.get("source"))
 }
 
-fn channels(image: &Image) -> usize {
+pub fn channels(image: &Image) -> usize {
     match image.pixels {
         Pixels::U8 { channels, .. } | Pixels::F32 { channels, .. } => channels.into(),
     }
@@ -194,7 +203,7 @@ fn make(image: &Image, part: Part) -> Image {
 
 impl Images {
     /// Are so many texels allowed?
-    fn take(&mut self, texels: u64) -> bool {
+    pub fn take(&mut self, texels: u64) -> bool {
         let left = self.left.checked_sub(texels);
         self.left = left.unwrap_or(self.left);
         left.is_some()

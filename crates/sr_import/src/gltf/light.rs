@@ -4,7 +4,7 @@
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 use glam::{DMat4, DVec3};
-use sr_scene::{LightDesc, Rgb};
+use sr_scene::{LightDesc, Rgb, SpotFalloff};
 
 use super::document::Document;
 use super::json::Value;
@@ -16,14 +16,10 @@ impl Document<'_, '_> {
         let span = light.span.clone();
         let color = rgb(self.numbers(light, "color", [1.0; 3]));
         let intensity = color * self.number(light, "intensity", 1.0) as f32;
-        if let Some(range) = light.get("range") {
-            let message = "light is not cut off at a range";
-            self.warn_once(
-                "gltf::light-range",
-                &range.span,
-                message,
-                "it falls off by the square of the distance",
-            );
+        let range = self.number(light, "range", f64::INFINITY) as f32;
+        if !(range > 0.0) {
+            self.warn("gltf::light", &span, format!("a light that shines {range} far"), "it is left out");
+            return;
         }
         if intensity == Rgb::ZERO {
             return;
@@ -34,7 +30,7 @@ impl Document<'_, '_> {
             return;
         }
         let desc = match light.get("type").and_then(Value::text) {
-            Some("point") => LightDesc::Point { position: place.as_vec3(), intensity, span },
+            Some("point") => LightDesc::Point { position: place.as_vec3(), intensity, range, span },
             Some("directional") => LightDesc::Directional {
                 direction: (rotation * DVec3::NEG_Z).normalize().as_vec3(),
                 irradiance: intensity,
@@ -57,6 +53,8 @@ impl Document<'_, '_> {
                     // A cone of a half space has no square around it.
                     cutoff_angle: outer.min(FRAC_PI_2 - 1e-3) as f32,
                     beam_width: inner.min(FRAC_PI_2 - 1e-3) as f32,
+                    falloff: SpotFalloff::SquaredCosine,
+                    range,
                     texture: None,
                     span,
                 }

@@ -1,7 +1,5 @@
 //! Materials: the metallic-roughness model with its extensions, what covers it, and what it emits.
 
-use std::collections::HashSet;
-
 use sr_scene::{
     ColorInput, Emission, MaterialDesc, MaterialId, MeshColorOf, MetallicRoughnessDesc, Rgb, ScalarInput,
     Span, TextureDesc, Tilting,
@@ -16,12 +14,12 @@ use super::texture::{Sets, rgb};
 pub type Key = (Option<usize>, bool);
 
 /// What a primitive is covered with.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub struct Surface {
     pub material: MaterialId,
     pub emission: Option<Emission>,
-    /// The set of texture coordinates that its textures take.
-    pub set: usize,
+    /// The sets of texture coordinates that its textures take.
+    pub sets: Sets,
 }
 
 /// What an object of the file says about the base of its surface.
@@ -38,19 +36,19 @@ impl Document<'_, '_> {
     /// The surface of a primitive.
     pub fn surface(&mut self, material: Option<&Value>, has_colors: bool) -> Surface {
         let key = (material.and_then(Value::index), has_colors);
-        if let Some(&known) = self.materials.get(&key) {
-            return known;
+        if let Some(known) = self.materials.get(&key) {
+            return known.clone();
         }
         let found = material.and_then(|index| self.item("materials", index));
         let nothing = Value { kind: super::json::Kind::Null, span: Span::default() };
         let surface = self.make_surface(found.unwrap_or(&nothing), has_colors);
-        self.materials.insert(key, surface);
+        self.materials.insert(key, surface.clone());
         surface
     }
 
     fn make_surface(&mut self, material: &Value, has_colors: bool) -> Surface {
         let span = &material.span;
-        let mut sets = Sets::new();
+        let mut sets = Sets::of(material);
         let old = material.extension("KHR_materials_pbrSpecularGlossiness");
         let (base, desc) = match old {
             Some(old) => self.specular_glossiness(old, has_colors, &mut sets),
@@ -68,7 +66,8 @@ impl Document<'_, '_> {
         };
         let transmits = matches!(
             &desc,
-            MaterialDesc::MetallicRoughness(m) if m.transmission != ScalarInput::Constant(0.0)
+            MaterialDesc::MetallicRoughness(m)
+                if [m.transmission, m.diffuse_transmission].iter().any(|part| *part != ScalarInput::Constant(0.0))
         );
         if let Some(info) = material.get("normalTexture") {
             let scale = self.number(info, "scale", 1.0) as f32;
@@ -85,16 +84,7 @@ impl Document<'_, '_> {
         if let Some(opacity) = self.opacity(material, &base, &mut sets) {
             id = self.out.add_material(MaterialDesc::Mask { opacity, inner: id }, span);
         }
-        let set = sets.first().map_or(0, |(set, _)| *set);
-        let mut others = HashSet::new();
-        for (other, place) in sets.iter().filter(|(other, _)| *other != set) {
-            if others.insert(*other) {
-                let message =
-                    format!("the material's textures take the sets {set} and {other} of coordinates");
-                self.warn("gltf::texture-sets", place, message, &format!("all take set {set}"));
-            }
-        }
-        Surface { material: id, emission: emission.map(|radiance| Emission { radiance }), set }
+        Surface { material: id, emission: emission.map(|radiance| Emission { radiance }), sets }
     }
 
     fn metallic_roughness(
@@ -115,9 +105,15 @@ impl Document<'_, '_> {
         let sheen = material.extension("KHR_materials_sheen");
         let transmission = material.extension("KHR_materials_transmission");
         let channel = Part::Channel;
-        if let Some(normals) = clearcoat.and_then(|coat| coat.get("clearcoatNormalTexture")) {
-            let message = "a coat has no normals of its own";
-            self.warn("gltf::clearcoat-normal", &normals.span, message, "those of the base are used");
+        if let Some(coat) =
+            clearcoat.filter(|coat| coat.get("clearcoatFactor").is_some_and(|f| f.number() != Some(0.0)))
+        {
+            let (own, base) = (coat.get("clearcoatNormalTexture"), material.get("normalTexture"));
+            if own.map(normal_map) != base.map(normal_map) {
+                let message = "a coat has no normals of its own";
+                let span = own.map_or(&coat.span, |own| &own.span);
+                self.warn("gltf::clearcoat-normal", span, message, "those of the base are used");
+            }
         }
         let thin = match material.extension("KHR_materials_volume") {
             Some(volume) => {
@@ -128,6 +124,17 @@ impl Document<'_, '_> {
             None => true,
         };
         let (anisotropy, anisotropy_rotation) = self.anisotropy(material, sets);
+        let leaf = material.extension("KHR_materials_diffuse_transmission");
+        let factor = ("diffuseTransmissionFactor", 0.0);
+        let diffuse_transmission =
+            self.scalar(leaf, factor, ("diffuseTransmissionTexture", channel(3)), sets);
+        let factor = ("diffuseTransmissionColorFactor", 1.0);
+        let diffuse_transmission_color = self.color(leaf, factor, "diffuseTransmissionColorTexture", sets);
+        if let (Some(leaf), false) = (leaf, thin || diffuse_transmission == ScalarInput::Constant(0.0)) {
+            let message = "light is not scattered inside bodies";
+            self.warn("gltf::diffuse-body", &leaf.span, message, "their surfaces are thin sheets");
+        }
+        let thin = thin || diffuse_transmission != ScalarInput::Constant(0.0);
         let desc = MaterialDesc::MetallicRoughness(MetallicRoughnessDesc {
             base_color: base.color,
             metallic,
@@ -161,6 +168,8 @@ impl Document<'_, '_> {
                 sets,
             ),
             thin,
+            diffuse_transmission,
+            diffuse_transmission_color,
             anisotropy,
             anisotropy_rotation,
         });
@@ -280,6 +289,14 @@ impl Document<'_, '_> {
         }
         (strength, rotation)
     }
+}
+
+/// What a reference to a normal map says: which texture, how strong, by which coordinates.
+fn normal_map(info: &Value) -> (Option<usize>, f64, Option<usize>, bool) {
+    let number = |name: &str| info.get(name).and_then(Value::index);
+    let scale = info.get("scale").and_then(Value::number).unwrap_or(1.0);
+    let is_moved = info.extension("KHR_texture_transform").is_some();
+    (number("index"), scale, number("texCoord").filter(|set| *set > 0), is_moved)
 }
 
 pub fn factor_of(base: &Base) -> Rgb {

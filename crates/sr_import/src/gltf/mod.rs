@@ -2,31 +2,36 @@
 //!
 //! - `json`, `container`: a file to values with places, and bytes. Decide no meaning.
 //! - `document`: indices followed, values of the wrong kind said, buffers read once.
-//! - `accessor`: numbers out of buffers. `geometry`: a primitive's triangles; `morph`, `skin`: as they stand at time 0.
-//! - `image`, `texture`, `material`: what surfaces look like. `camera`, `light`, `node`: where everything stands.
+//! - `accessor`: numbers out of buffers. `draco`, `meshopt`: the same out of packed streams. `geometry`: a primitive's triangles; `morph`, `skin`: as they stand at time 0.
+//! - `image`, `texture`, `material`: what surfaces look like; `variant`: which of them. `camera`, `light`, `environment`, `node`: where everything stands.
 //! - `extensions`: which of them are done, and what is said about the others. `properties`: those that glTF does not know.
 
 mod accessor;
 mod camera;
 mod container;
 mod document;
+mod draco;
+mod environment;
 pub mod extensions;
 mod geometry;
 mod image;
 mod json;
 mod light;
 mod material;
+mod meshopt;
 mod morph;
 mod node;
 mod properties;
 mod skin;
 mod specular_glossiness;
 mod texture;
+pub mod variant;
 
 use std::path::PathBuf;
 
 use sr_scene::{Diagnostic, Diagnostics, SceneDesc, Span};
 
+use crate::LoadOptions;
 use crate::assembly::Assembly;
 use document::Document;
 
@@ -35,7 +40,7 @@ pub fn load(
     name: &str,
     bytes: Vec<u8>,
     directories: Vec<PathBuf>,
-    environment: Option<PathBuf>,
+    options: &LoadOptions,
     d: &mut Diagnostics,
 ) -> Option<SceneDesc> {
     let container = match container::read(bytes) {
@@ -59,15 +64,11 @@ pub fn load(
     drop(container.json);
     let span = Span { source, bytes: 0..0 };
     let mut document = Document::new(&root, container.binary, Assembly::new(directories, d));
-    document.out.environment = environment;
+    document.out.environment = options.environment.clone();
+    document.choose_variant(options.variant.as_deref(), &span);
     extensions::report(&root, document.out.d);
     properties::report(&root, document.out.d);
     document.scene();
-    if let (0, Some(packed)) = (document.shapes, document.packed.clone()) {
-        let message = "all meshes are packed by KHR_draco_mesh_compression; save the file without it \
-                       (`gltf-transform copy` unpacks it)";
-        document.error("gltf::compressed", &packed, message);
-    }
     document.out.view_from = crate::assembly::FRONT_ABOVE;
     // Surfaces that glow no brighter than white are labels and lamps' covers, made to be seen under a sky.
     let strong = document.strong_emission;

@@ -52,7 +52,6 @@ impl<'v> Document<'v, '_> {
             let bent = joints.is_some() || weights.is_some();
             let bend = Bend { node: bent.then_some(s.node), weights, joints: joints.as_deref() };
             let parts = self.parts(s.mesh, s.desc, bend);
-            self.shapes += parts.len();
             // A skinned mesh is where its joints are.
             let world = if joints.is_some() { DMat4::IDENTITY } else { s.world };
             let (dark, lit): (Vec<Part>, Vec<Part>) =
@@ -161,6 +160,7 @@ impl<'v> Document<'v, '_> {
             self.warn("gltf::scenes", &chosen.span, message, "this one is shown");
         }
         if let Some(chosen) = chosen {
+            self.image_based_light(chosen);
             return chosen.get("nodes").map_or(Vec::new(), |nodes| nodes.list().to_vec());
         }
         let nodes = self.root.get("nodes").map_or(&[][..], Value::list);

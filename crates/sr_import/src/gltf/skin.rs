@@ -6,6 +6,7 @@ use glam::{DMat3, DMat4};
 use sr_scene::MeshDesc;
 
 use super::document::Document;
+use super::draco::Unpacked;
 use super::json::Value;
 
 impl Document<'_, '_> {
@@ -29,13 +30,24 @@ impl Document<'_, '_> {
     }
 
     /// Moves every vertex by the joints that hold it.
-    pub fn skin(&mut self, attributes: &Value, joints: &[DMat4], mesh: &mut MeshDesc) {
+    pub fn skin(
+        &mut self,
+        attributes: &Value,
+        packed: Option<&Unpacked>,
+        joints: &[DMat4],
+        mesh: &mut MeshDesc,
+    ) {
         let mut sums = vec![DMat4::ZERO; mesh.positions.len()];
         let mut set = 0;
-        while let (Some(indices), Some(weights)) =
-            (attributes.get(&format!("JOINTS_{set}")), attributes.get(&format!("WEIGHTS_{set}")))
-        {
-            let (Some(rows), Some(weights)) = (self.rows(indices, &[4]), self.rows(weights, &[4])) else {
+        loop {
+            let names = (format!("JOINTS_{set}"), format!("WEIGHTS_{set}"));
+            let (Some(indices), Some(weights)) = (attributes.get(&names.0), attributes.get(&names.1)) else {
+                break;
+            };
+            let (Some(rows), Some(weights)) = (
+                self.attribute(packed, &names.0, indices, &[4]),
+                self.attribute(packed, &names.1, weights, &[4]),
+            ) else {
                 return;
             };
             for ((sum, held), weights) in sums.iter_mut().zip(rows.iter()).zip(weights.iter()) {

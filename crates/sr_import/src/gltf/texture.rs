@@ -1,14 +1,60 @@
 //! Textures: which image, how it repeats, how its coordinates are moved, and which set of them it takes.
 
 use glam::{Affine2, Mat2, Vec2};
-use sr_scene::{ColorInput, Filter, Rgb, ScalarInput, Span, TextureDesc, Wrap};
+use sr_scene::{ColorInput, Filter, MAX_UV_SETS, Rgb, ScalarInput, Span, TextureDesc, Wrap};
 
 use super::document::Document;
 use super::image::{self, Part};
 use super::json::Value;
 
-/// The sets of texture coordinates that a material's textures take, with the place of each.
-pub type Sets = Vec<(usize, Span)>;
+/// The sets of texture coordinates that a material's textures take; the first is that which tangents follow.
+#[derive(Clone, Debug)]
+pub struct Sets {
+    pub used: Vec<usize>,
+    /// Does any texture take one?
+    pub any: bool,
+}
+
+impl Sets {
+    /// A material's, of which the first is known: that of its normals, or else of what has a direction, of its base, or of any texture.
+    pub fn of(material: &Value) -> Self {
+        let directed = [
+            &["normalTexture"][..],
+            &["extensions", "KHR_materials_clearcoat", "clearcoatNormalTexture"],
+            &["extensions", "KHR_materials_anisotropy", "anisotropyTexture"],
+            &["pbrMetallicRoughness", "baseColorTexture"],
+        ];
+        let info =
+            directed.into_iter().find_map(|path| material.path(path)).or_else(|| first_texture(material));
+        Self { used: vec![info.map_or(0, set_of)], any: false }
+    }
+
+    /// Where a set is among those used; `None` if there are too many.
+    fn index(&mut self, set: usize) -> Option<u32> {
+        self.any = true;
+        let known = self.used.iter().position(|&used| used == set);
+        let index = known.unwrap_or_else(|| {
+            self.used.push(set);
+            self.used.len() - 1
+        });
+        u32::try_from(index).ok().filter(|&index| index < MAX_UV_SETS)
+    }
+}
+
+/// The set that a reference to a texture names.
+fn set_of(info: &Value) -> usize {
+    let transform = info.extension("KHR_texture_transform");
+    let set = transform.and_then(|t| t.get("texCoord")).or_else(|| info.get("texCoord"));
+    set.and_then(Value::index).unwrap_or(0)
+}
+
+/// The first reference to a texture in an object.
+fn first_texture(object: &Value) -> Option<&Value> {
+    let is_texture = |name: &str, value: &Value| name.ends_with("Texture") && value.get("index").is_some();
+    let members = || object.members().iter();
+    let own = members().find(|(name, value)| is_texture(name, value)).map(|(_, value)| value);
+    own.or_else(|| members().find_map(|(_, value)| first_texture(value)))
+}
 
 /// Meshes have v upwards, as the frames of normal maps want it; glTF counts it downwards.
 const UPRIGHT: Affine2 = Affine2 { matrix2: Mat2::from_cols(Vec2::X, Vec2::NEG_Y), translation: Vec2::Y };
@@ -40,18 +86,19 @@ impl Document<'_, '_> {
         let image = self.image_part(source.index()?, part)?;
         let (filter, wrap) = self.sampler(texture);
         let transform = info.extension("KHR_texture_transform");
-        let set = transform.and_then(|t| t.get("texCoord")).or_else(|| info.get("texCoord"));
-        sets.push((set.and_then(Value::index).unwrap_or(0), info.span.clone()));
+        let set = sets.index(set_of(info)).unwrap_or_else(|| {
+            let message = format!("the material's textures take more than {MAX_UV_SETS} sets of coordinates");
+            self.warn("gltf::texture-sets", &info.span, message, "this one takes the first");
+            0
+        });
         let to_uv = transform.map_or(Affine2::IDENTITY, |t| self.uv_transform(t)) * UPRIGHT;
         let srgb = part == Part::Color;
-        Some(self.out.add_texture(TextureDesc::Bitmap {
-            image,
-            filter,
-            wrap,
-            srgb,
-            to_uv,
-            span: info.span.clone(),
-        }))
+        let span = info.span.clone();
+        let input = self.out.add_texture(TextureDesc::Bitmap { image, filter, wrap, srgb, to_uv, span });
+        if set == 0 {
+            return Some(input);
+        }
+        Some(self.out.add_texture(TextureDesc::OtherUvs { input, set, span: info.span.clone() }))
     }
 
     /// A rotation of the coordinates counter-clockwise as one sees them, v being downwards, after scaling.

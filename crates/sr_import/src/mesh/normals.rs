@@ -60,6 +60,9 @@ pub fn crease(mesh: &mut MeshDesc, max_angle: f32) {
     if !mesh.uvs.is_empty() {
         mesh.uvs = source.iter().map(|&i| mesh.uvs[i as usize]).collect();
     }
+    for set in &mut mesh.further_uvs {
+        *set = source.iter().filter_map(|&i| set.get(i as usize)).copied().collect();
+    }
     if !mesh.vertex_colors.is_empty() {
         mesh.vertex_colors = source.iter().map(|&i| mesh.vertex_colors[i as usize]).collect();
     }

@@ -136,11 +136,13 @@ fn drop_degenerate(mesh: &mut MeshDesc) -> usize {
 
 fn check(mesh: &MeshDesc) -> Result<(), String> {
     let n = mesh.positions.len();
-    for (len, what) in [
+    let further = mesh.further_uvs.iter().map(|set| (set.len(), "texture coordinates"));
+    let arrays = [
         (mesh.normals.len(), "normals"),
         (mesh.uvs.len(), "texture coordinates"),
         (mesh.vertex_colors.len(), "colors"),
-    ] {
+    ];
+    for (len, what) in arrays.into_iter().chain(further) {
         if len != 0 && len != n {
             return Err(format!("it has {len} {what} for {n} vertices"));
         }
@@ -152,7 +154,8 @@ fn check(mesh: &MeshDesc) -> Result<(), String> {
     if let Some(vertex) = position(&mesh.positions, |p| !p.is_finite()) {
         return Err(format!("vertex {vertex} is {}, which is not finite", mesh.positions[vertex]));
     }
-    if let Some(vertex) = position(&mesh.uvs, |uv| !uv.is_finite()) {
+    let sets = [&mesh.uvs].into_iter().chain(&mesh.further_uvs);
+    if let Some(vertex) = sets.into_iter().find_map(|set| position(set, |uv| !uv.is_finite())) {
         return Err(format!("the texture coordinates of vertex {vertex} are not finite"));
     }
     if let Some(at) = position(&mesh.triangles, |t| t.iter().any(|&i| i as usize >= n)) {

@@ -127,6 +127,8 @@ impl MeshScene<'_, '_> {
             sheen_roughness: ScalarInput::Constant(0.5),
             transmission: ScalarInput::Constant(0.0),
             thin: true,
+            diffuse_transmission: ScalarInput::Constant(0.0),
+            diffuse_transmission_color: ColorInput::Constant(Rgb::ONE),
             anisotropy: ScalarInput::Constant(0.0),
             anisotropy_rotation: 0.0,
         })

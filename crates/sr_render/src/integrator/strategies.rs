@@ -273,7 +273,8 @@ impl StrategyTracer {
             Share::Technique { from, .. } => scene.lights.pdf_of_point(light, from, surface, hit.primitive),
             Share::All | Share::Nothing => 0.0,
         };
-        scene.lights.emitted(light, surface, -ray.direction, &scene.textures) * self.weight(share, p_light)
+        let surface = scene.emitter(*surface, light, hit);
+        scene.lights.emitted(light, &surface, -ray.direction, &scene.textures) * self.weight(share, p_light)
     }
 
     fn weight(&self, share: Share, p_light: f32) -> f32 {

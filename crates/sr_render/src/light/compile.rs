@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::Vec2;
 use sr_scene::{ColorInput, LightDesc, SceneDesc, TextureDesc};
 
+use super::point::Cone;
 use super::sphere_image::SphereImage;
 use super::{
     ConstantEnvironment, Delta, DirectionalLight, Environment, EnvironmentSampling, Extended,
@@ -45,14 +46,24 @@ pub(crate) fn compile_light(light: &LightDesc, desc: &SceneDesc) -> Compiled {
             let sun = Sun::new(turbidity, direction, scale, aperture, world_from_light);
             Compiled::Extended(Extended::Sun(sun))
         }
-        LightDesc::Point { position, intensity, .. } => {
-            Compiled::Delta(Delta::Point(PointLight { position, intensity }))
+        LightDesc::Point { position, intensity, range, .. } => {
+            Compiled::Delta(Delta::Point(PointLight { position, intensity, range }))
         }
         LightDesc::Directional { direction, irradiance, .. } => {
             Compiled::Delta(Delta::Directional(DirectionalLight { direction, irradiance }))
         }
-        LightDesc::Spot { world_from_light, intensity, cutoff_angle, beam_width, texture, .. } => {
-            let spot = SpotLight::new(world_from_light, intensity, cutoff_angle, beam_width, texture);
+        LightDesc::Spot {
+            world_from_light,
+            intensity,
+            cutoff_angle,
+            beam_width,
+            falloff,
+            range,
+            texture,
+            ..
+        } => {
+            let cone = Cone { cutoff_angle, beam_width, falloff };
+            let spot = SpotLight::new(world_from_light, intensity, cone, range, texture);
             Compiled::Delta(Delta::Spot(spot))
         }
         LightDesc::Projector { world_from_light, irradiance, scale, fov_axis, fov, .. } => {

@@ -276,6 +276,14 @@ impl Lights {
         Some(s)
     }
 
+    /// The set of texture coordinates that an area light's radiance is looked up at, if it is not the first one.
+    pub fn other_set(&self, id: LightId, textures: &Textures) -> Option<u8> {
+        match &self.extended[id.0 as usize] {
+            Extended::Area(area) => textures.other_set(area.emission()),
+            _ => None,
+        }
+    }
+
     /// Radiance that a point of an area light emits towards `w`.
     #[inline]
     pub fn emitted(&self, id: LightId, surface: &Surface, w: Vec3, textures: &Textures) -> Rgb {

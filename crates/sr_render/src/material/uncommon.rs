@@ -126,6 +126,8 @@ impl Uncommon {
                 sheen_roughness: at.scalar(m.sheen_roughness),
                 transmission: at.scalar(m.transmission),
                 is_thin: m.thin,
+                diffuse_transmission: at.scalar(m.diffuse_transmission),
+                diffuse_transmission_color: at.color(m.diffuse_transmission_color),
                 anisotropy: at.scalar(m.anisotropy),
                 anisotropy_rotation: m.anisotropy_rotation,
             })

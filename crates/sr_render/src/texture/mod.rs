@@ -12,11 +12,12 @@ use std::sync::Arc;
 
 use glam::{Affine2, Vec2, Vec3};
 use sr_scene::{
-    ColorInput, Filter, Image, MeshColorOf, Pixels, Rgb, ScalarInput, TextureDesc, TextureId, Wrap,
+    ColorInput, Filter, Image, MAX_UV_SETS, MeshColorOf, Pixels, Rgb, ScalarInput, TextureDesc, TextureId,
+    Wrap,
 };
 
 use mip::Pyramid;
-pub(crate) use point::{MeshColors, footprint};
+pub(crate) use point::{FurtherUvs, MeshColors, footprint};
 pub use point::{RayCone, TexturePoint};
 use texel::wrapped;
 pub(crate) use texel::{bilinear, texel, to_cell};
@@ -43,6 +44,7 @@ enum Texture {
     Checkerboard { colors: [ColorInput; 2], to_uv: Affine2 },
     Scale([ColorInput; 2]),
     Mix { colors: [ColorInput; 2], weight: ScalarInput },
+    OtherUvs { color: ColorInput, set: u8 },
     MeshColor { of: MeshColorOf, scale: f32 },
 }
 
@@ -71,6 +73,9 @@ impl Textures {
                 TextureDesc::Scale { input, factor, .. } => Texture::Scale([input, factor]),
                 TextureDesc::Mix { color0, color1, weight, .. } => {
                     Texture::Mix { colors: [color0, color1], weight }
+                }
+                TextureDesc::OtherUvs { input, set, .. } => {
+                    Texture::OtherUvs { color: input, set: set.min(MAX_UV_SETS - 1) as u8 }
                 }
                 TextureDesc::MeshColor { of, scale, .. } => Texture::MeshColor { of, scale },
             };
@@ -136,6 +141,7 @@ impl Textures {
                 };
                 self.average(a).lerp(self.average(b), weight.clamp(0.0, 1.0))
             }
+            Texture::OtherUvs { color, .. } => self.average(*color),
             Texture::MeshColor { scale, .. } => Rgb::splat(0.5 * scale),
             Texture::Bitmap { image, srgb, .. } | Texture::Mipmap { image, srgb, .. } => {
                 let image = &self.images[*image as usize];
@@ -161,6 +167,9 @@ impl Textures {
                 let image = &self.images[*image as usize];
                 let slope = bilinear_slope(image, (*wrap, *srgb), to_uv.transform_point2(uv));
                 to_uv.matrix2.transpose() * slope
+            }
+            Texture::OtherUvs { color: ColorInput::Texture(inner), set } => {
+                self.gradient(*inner, point.at_set(*set))
             }
             Texture::Bitmap { image, to_uv, .. } | Texture::Mipmap { image, to_uv, .. } => {
                 let image = &self.images[*image as usize];
@@ -215,7 +224,21 @@ impl Textures {
                 };
                 least([of_color(a), of_color(b), of_weight])
             }
+            &Texture::OtherUvs { color, .. } => of_color(color),
             Texture::MeshColor { .. } => None,
+        }
+    }
+
+    /// The set of texture coordinates that a colour is looked up at, if it is not the first one.
+    pub(crate) fn other_set(&self, input: ColorInput) -> Option<u8> {
+        let ColorInput::Texture(TextureId(id)) = input else { return None };
+        match &self.textures[id as usize] {
+            &Texture::OtherUvs { set, .. } => Some(set),
+            &Texture::Checkerboard { colors: [a, b], .. } | &Texture::Scale([a, b]) => {
+                self.other_set(a).or_else(|| self.other_set(b))
+            }
+            &Texture::Mix { colors: [a, b], .. } => self.other_set(a).or_else(|| self.other_set(b)),
+            Texture::Bitmap { .. } | Texture::Mipmap { .. } | Texture::MeshColor { .. } => None,
         }
     }
 
@@ -253,6 +276,7 @@ impl Textures {
                 let weight = self.scalar(weight, *at).clamp(0.0, 1.0);
                 self.value(a, *at) * (1.0 - weight) + self.value(b, *at) * weight
             }
+            &Texture::OtherUvs { color, set } => self.value(color, at.at_set(set)),
             &Texture::MeshColor { of, scale } => {
                 scale
                     * match of {

@@ -4,7 +4,7 @@
 
 use glam::{Vec2, Vec3};
 use sr_geometry::{Geometry, Hit, Ray, ShapeId};
-use sr_scene::{Geometry as Form, Rgb, SceneDesc, TextureDesc};
+use sr_scene::{Geometry as Form, MAX_UV_SETS, Rgb, SceneDesc, TextureDesc};
 
 /// A point of a surface, as textures see it.
 #[derive(Clone, Copy, Debug)]
@@ -17,6 +17,21 @@ pub struct TexturePoint {
     pub vertex_color: Rgb,
     /// The mesh's colour there, if it has colours of faces.
     pub face_color: Rgb,
+    /// The mesh's further sets of texture coordinates there; `uv` for those that it does not have.
+    pub further_uvs: [Vec2; 3],
+}
+
+/// How many sets of texture coordinates there are besides the first.
+const FURTHER_SETS: usize = 3;
+const _: () = assert!(FURTHER_SETS + 1 == MAX_UV_SETS as usize);
+
+impl TexturePoint {
+    /// The same point with another set's coordinates for the first.
+    #[inline]
+    pub fn at_set(self, set: u8) -> Self {
+        let uv = usize::from(set).checked_sub(1).and_then(|at| self.further_uvs.get(at));
+        Self { uv: uv.copied().unwrap_or(self.uv), ..self }
+    }
 }
 
 /// What is shown where a mesh has no colours.
@@ -25,7 +40,13 @@ const NO_COLOR: Rgb = Rgb::splat(0.5);
 impl From<Vec2> for TexturePoint {
     #[inline(always)]
     fn from(uv: Vec2) -> Self {
-        Self { uv, footprint: 0.0, vertex_color: NO_COLOR, face_color: NO_COLOR }
+        Self {
+            uv,
+            footprint: 0.0,
+            vertex_color: NO_COLOR,
+            face_color: NO_COLOR,
+            further_uvs: [uv; FURTHER_SETS],
+        }
     }
 }
 
@@ -120,5 +141,59 @@ impl MeshColors {
     /// Bytes of the colours.
     pub fn memory_bytes(&self) -> usize {
         size_of_val(&self.first[..]) + size_of_val(&self.colors[..])
+    }
+}
+
+/// The further sets of texture coordinates of meshes, if any texture is looked up at one.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct FurtherUvs {
+    /// Per shape, where its sets start.
+    first: Vec<[Option<u32>; FURTHER_SETS]>,
+    uvs: Vec<Vec2>,
+}
+
+impl FurtherUvs {
+    /// Those of all meshes of a scene, in the order of its shapes; none if no texture is looked up at them.
+    pub fn new(desc: &SceneDesc) -> Self {
+        let mut all = Self::default();
+        if !desc.textures.iter().any(|t| matches!(t, TextureDesc::OtherUvs { .. })) {
+            return all;
+        }
+        for shape in desc.shapes.iter().chain(desc.groups.iter().flat_map(|group| &group.shapes)) {
+            let sets = match &shape.geometry {
+                Form::Mesh(mesh) => &mesh.further_uvs[..],
+                _ => &[],
+            };
+            let mut first = [None; FURTHER_SETS];
+            for (first, set) in first.iter_mut().zip(sets).filter(|(_, set)| !set.is_empty()) {
+                *first = Some(all.uvs.len() as u32);
+                all.uvs.extend_from_slice(set);
+            }
+            all.first.push(first);
+        }
+        all
+    }
+
+    /// Are there none?
+    #[inline(always)]
+    pub fn is_empty(&self) -> bool {
+        self.first.is_empty()
+    }
+
+    /// Of each set the coordinates at a hit; `uv` of those that the shape does not have.
+    pub fn at(&self, geometry: &Geometry, hit: &Hit, uv: Vec2) -> [Vec2; FURTHER_SETS] {
+        let ShapeId(shape) = hit.shape;
+        self.first[shape as usize].map(|first| {
+            let corners = first.and_then(|first| {
+                let indices = geometry.vertex_indices(hit.shape, hit.primitive)?;
+                Some(indices.map(|i| self.uvs[(first + i) as usize]))
+            });
+            corners.map_or(uv, |[a, b, c]| a * (1.0 - hit.b1 - hit.b2) + b * hit.b1 + c * hit.b2)
+        })
+    }
+
+    /// Bytes of the coordinates.
+    pub fn memory_bytes(&self) -> usize {
+        size_of_val(&self.first[..]) + size_of_val(&self.uvs[..])
     }
 }

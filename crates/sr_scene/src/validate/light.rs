@@ -28,8 +28,9 @@ impl Check<'_> {
                     );
                 }
             }
-            LightDesc::Point { position, intensity, span } => {
+            LightDesc::Point { position, intensity, range, span } => {
                 self.color(*intensity, "intensity", span);
+                self.range(*range, span);
                 self.position(*position, span);
             }
             LightDesc::Directional { direction, irradiance, span } => {
@@ -38,8 +39,18 @@ impl Check<'_> {
                     self.error("scene::direction", span, "the direction is not of unit length");
                 }
             }
-            LightDesc::Spot { world_from_light, intensity, cutoff_angle, beam_width, texture, span } => {
+            LightDesc::Spot {
+                world_from_light,
+                intensity,
+                cutoff_angle,
+                beam_width,
+                texture,
+                range,
+                span,
+                ..
+            } => {
                 self.color(*intensity, "intensity", span);
+                self.range(*range, span);
                 if let Some(id) = texture {
                     self.texture_id(*id, span);
                 }
@@ -93,6 +104,12 @@ impl Check<'_> {
                     self.error("scene::sun", span, message);
                 }
             }
+        }
+    }
+
+    fn range(&mut self, range: f32, span: &Span) {
+        if !(range > 0.0) {
+            self.error("scene::range", span, format!("a light that shines {range} far"));
         }
     }
 

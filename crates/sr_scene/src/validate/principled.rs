@@ -52,6 +52,7 @@ impl Check<'_> {
         self.albedo(&m.base_color, "base_color", span);
         self.color_input(&m.specular_color, "specular_color", span);
         self.albedo(&m.sheen_color, "sheen_color", span);
+        self.albedo(&m.diffuse_transmission_color, "diffuse_transmission_color", span);
         let units = [
             (&m.metallic, "metallic"),
             (&m.roughness, "roughness"),
@@ -60,6 +61,7 @@ impl Check<'_> {
             (&m.clearcoat_roughness, "clearcoat_roughness"),
             (&m.sheen_roughness, "sheen_roughness"),
             (&m.transmission, "transmission"),
+            (&m.diffuse_transmission, "diffuse_transmission"),
             (&m.anisotropy, "anisotropy"),
         ];
         for (input, name) in units {

@@ -62,6 +62,7 @@ impl Check<'_> {
                 let fits = |len: usize, count: usize| len == 0 || len == count;
                 if !(fits(mesh.normals.len(), n)
                     && fits(mesh.uvs.len(), n)
+                    && mesh.further_uvs.iter().all(|set| fits(set.len(), n))
                     && fits(mesh.vertex_colors.len(), n)
                     && fits(mesh.face_colors.len(), mesh.triangles.len()))
                 {

@@ -6,7 +6,7 @@ use glam::Affine2;
 
 use super::Check;
 use crate::diagnostic::{Diagnostic, Severity, Span};
-use crate::{ColorInput, LightDesc, MaterialDesc, Pixels, ScalarInput, TextureDesc, TextureId};
+use crate::{ColorInput, LightDesc, MAX_UV_SETS, MaterialDesc, Pixels, ScalarInput, TextureDesc, TextureId};
 
 /// Textures that one lookup may lead to.
 const MAX_LOOKUPS: u32 = 256;
@@ -72,6 +72,15 @@ impl Check<'_> {
                             format!("a weight of {weight}: [0, 1] is possible"),
                         );
                     }
+                }
+                (None, span)
+            }
+            TextureDesc::OtherUvs { input, set, span } => {
+                color(self, input, "the color", span);
+                if !(1..MAX_UV_SETS).contains(set) {
+                    let message =
+                        format!("set {set} of texture coordinates: 1 to {} are possible", MAX_UV_SETS - 1);
+                    self.error("scene::texture-coordinates", span, message);
                 }
                 (None, span)
             }

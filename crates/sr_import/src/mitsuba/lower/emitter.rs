@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::{DMat4, DVec3};
-use sr_scene::{ColorInput, Diagnostic, LightDesc, Portal, Rgb, SphereMapping};
+use sr_scene::{ColorInput, Diagnostic, LightDesc, Portal, Rgb, SphereMapping, SpotFalloff};
 
 use super::Lowering;
 use super::color::Role;
@@ -36,7 +36,7 @@ impl<'a> Lowering<'a, '_> {
                 let position = props.vector("position", self.out.d);
                 let position = position.unwrap_or_else(|| to_world.transform_point3(DVec3::ZERO)).as_vec3();
                 let intensity = self.constant_color(&mut props, "intensity", Rgb::ONE, Role::Emission);
-                Some(LightDesc::Point { position, intensity, span })
+                Some(LightDesc::Point { position, intensity, range: f32::INFINITY, span })
             }
             "directional" => {
                 let to_world = props.transform("to_world", self.out.d);
@@ -65,7 +65,17 @@ impl<'a> Lowering<'a, '_> {
                     None => (None, intensity),
                 };
                 let (cutoff_angle, beam_width) = (cutoff.to_radians(), beam.to_radians());
-                Some(LightDesc::Spot { world_from_light, intensity, cutoff_angle, beam_width, texture, span })
+                let (falloff, range) = (SpotFalloff::Linear, f32::INFINITY);
+                Some(LightDesc::Spot {
+                    world_from_light,
+                    intensity,
+                    cutoff_angle,
+                    beam_width,
+                    falloff,
+                    range,
+                    texture,
+                    span,
+                })
             }
             "projector" => {
                 let world_from_light = props.transform("to_world", self.out.d).as_mat4();

@@ -75,6 +75,8 @@ impl<'a> Lowering<'a, '_> {
             sheen_roughness: self.scalar(props, "sheen_roughness", 0.0),
             transmission: self.scalar(props, "transmission", 0.0),
             thin: props.boolean("thin", self.out.d).unwrap_or(true),
+            diffuse_transmission: self.scalar(props, "diffuse_transmission", 0.0),
+            diffuse_transmission_color: self.factor(props, "diffuse_transmission_color", Rgb::ONE),
             anisotropy: self.scalar(props, "anisotropy", 0.0),
             anisotropy_rotation: props.float("anisotropy_rotation", self.out.d).unwrap_or(0.0).to_radians(),
         })

@@ -19,7 +19,7 @@ impl Reader<'_> {
             // Without an image it shines evenly.
             intensity *= power.map_or(1.0, |power| power / (4.0 * PI));
             let position = self.state.ctm.w_axis.truncate().as_vec3();
-            return Some(LightDesc::Point { position, intensity, span });
+            return Some(LightDesc::Point { position, intensity, range: f32::INFINITY, span });
         };
         let image = match power {
             None => self.out.image_file(&file, Decode::Linear, &file_span),

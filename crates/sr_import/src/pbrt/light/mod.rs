@@ -63,7 +63,7 @@ impl Reader<'_> {
         }
         let from = params.vector("from").unwrap_or(DVec3::ZERO);
         let position = self.state.ctm.transform_point3(from).as_vec3();
-        Some(LightDesc::Point { position, intensity, span: params.span.clone() })
+        Some(LightDesc::Point { position, intensity, range: f32::INFINITY, span: params.span.clone() })
     }
 
     fn distant(&mut self, params: &mut Params) -> Option<LightDesc> {

@@ -66,7 +66,7 @@ fn environment<Q: Sequence>(scene: &Scene, paths: &Paths<Q>, i: usize) -> Rgb {
 fn emitted<Q: Sequence>(scene: &Scene, paths: &Paths<Q>, at: &Vertices, i: usize, hit: &Hit) -> Rgb {
     let Some(light) = scene.light_of(hit.shape) else { return Rgb::ZERO };
     let ray = paths.rays.get(i);
-    let surface = at.surfaces.get(i, scene.geometry.uv(&ray, hit));
+    let surface = scene.emitter(at.surfaces.get(i, scene.geometry.uv(&ray, hit)), light, hit);
     let le = scene.lights.emitted(light, &surface, -ray.direction, &scene.textures);
     let pdf = paths.pdf[i];
     if le == Rgb::ZERO || pdf == f32::INFINITY {

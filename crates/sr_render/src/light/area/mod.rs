@@ -52,6 +52,11 @@ pub(super) enum Piece {
 }
 
 impl AreaLight {
+    /// What it emits, per point.
+    pub(crate) fn emission(&self) -> ColorInput {
+        self.radiance
+    }
+
     /// A mesh whose triangles shine. `None` if it has no area.
     pub(crate) fn mesh(
         mut triangles: Vec<Triangle>,
