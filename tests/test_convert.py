@@ -8,6 +8,7 @@ percent) of the picture's mean besides.
 
 from __future__ import annotations
 
+import base64
 import json
 import re
 import struct
@@ -137,6 +138,58 @@ def test_gltf_comes_back(name: str, extension: str, tmp_path: Path) -> None:
     out = tmp_path / f"out.{extension}"
     converted(source, out)
     assert differs(source, out, 2 * len(IN_GLTF), 0.01) is None
+
+
+def test_further_texture_coordinates_come_back(tmp_path: Path) -> None:
+    """A square whose texture takes its second coordinates: written with both, and shown alike."""
+    corners = [(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)]
+    first, second = [(0, 0)] * 4, [(0, 1), (1, 1), (1, 0), (0, 0)]
+    rows = [
+        struct.pack(f"<{n}f", *row) for n, table in ((3, corners), (2, first), (2, second)) for row in table
+    ]
+    data = b"".join(rows) + struct.pack("<6H", 0, 1, 2, 0, 2, 3)
+    image = b"P6 2 2 255\n" + bytes([255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255])
+
+    def uri(content: bytes) -> str:
+        return "data:;base64," + base64.b64encode(content).decode()
+
+    sizes = [(0, 48), (48, 32), (80, 32), (112, 12)]
+    kinds = [(5126, 4, "VEC3"), (5126, 4, "VEC2"), (5126, 4, "VEC2"), (5123, 6, "SCALAR")]
+    attributes = {"POSITION": 0, "TEXCOORD_0": 1, "TEXCOORD_1": 2}
+    # Tangents follow the first set, which the normals take.
+    material = {
+        "pbrMetallicRoughness": {"baseColorTexture": {"index": 0, "texCoord": 1}, "metallicFactor": 0},
+        "normalTexture": {"index": 1},
+    }
+    model = {
+        "asset": {"version": "2.0"},
+        "buffers": [{"byteLength": len(data), "uri": uri(data)}],
+        "bufferViews": [{"buffer": 0, "byteOffset": start, "byteLength": size} for start, size in sizes],
+        "accessors": [
+            {"bufferView": at, "componentType": component, "count": count, "type": kind}
+            for at, (component, count, kind) in enumerate(kinds)
+        ],
+        "images": [{"uri": uri(image)}, {"uri": uri(b"P6 1 1 255\n" + bytes([128, 128, 255]))}],
+        "textures": [{"source": 0}, {"source": 1}],
+        "materials": [material],
+        "meshes": [{"primitives": [{"attributes": attributes, "indices": 3, "material": 0}]}],
+        "nodes": [{"mesh": 0}],
+    }
+    source = tmp_path / "square.gltf"
+    source.write_text(json.dumps(model))
+    out = tmp_path / "again.gltf"
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", sr.SceneWarning)
+        sr.convert(source, out)
+        said = sr.convert(source, tmp_path / "square.xml").approximations
+        scenes = [sr.load(path) for path in (source, out)]
+    assert "convert::texture-coordinates" in [note.code for note in said]
+    written = json.loads(out.read_text())
+    assert {"TEXCOORD_0", "TEXCOORD_1"} <= set(written["meshes"][0]["primitives"][0]["attributes"])
+    base = written["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]
+    assert base["texCoord"] == 1
+    images = [sr.render(scene, size=(48, 32), spp=64).image for scene in scenes]
+    assert abs(images[0] - images[1]).mean() < 0.03 * images[0].mean()
 
 
 def test_a_room_in_gltf_follows_the_rules_of_the_format(cornell_path: Path, tmp_path: Path) -> None:

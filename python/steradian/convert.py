@@ -134,9 +134,7 @@ def convert_with_diagnostics(
     else:
         name = os.fspath(source)
         pairs = list(texts.items())
-        job = _internal.convert_file(
-            name, pairs, folders, variant, path, own_plugins, overwrite, threads
-        )
+        job = _internal.convert_file(name, pairs, folders, variant, path, own_plugins, overwrite, threads)
     _jobs.wait(job)
     files, found, report, seconds = job.result(color)
     diagnostics = tuple(Diagnostic(**fields) for fields in found)

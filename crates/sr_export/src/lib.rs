@@ -27,7 +27,7 @@ mod write;
 use std::collections::HashSet;
 use std::path::PathBuf;
 
-use sr_scene::{Diagnostic, Geometry, SceneDesc};
+use sr_scene::{Diagnostic, Geometry, SceneDesc, Span};
 
 pub use output::{Content, OutputFile};
 pub use write::{WriteError, write_files};
@@ -73,12 +73,18 @@ pub struct Export {
 /// The files of a scene. `name` is that of the scene's own file; the others are in a folder of that name without its
 /// extension.
 pub fn export(scene: &SceneDesc, target: Target, name: &str) -> Export {
-    match target {
+    let mut export = match target {
         Target::Mitsuba { own_plugins } => mitsuba::export(scene, own_plugins, name),
         Target::Pbrt => pbrt::export(scene, name),
         Target::Gltf => gltf::export(scene, name, false),
         Target::Glb => gltf::export(scene, name, true),
+    };
+    if scene.variants.len() > 1 {
+        let message = format!("the scene has {} variants of its materials", scene.variants.len());
+        let note = Diagnostic::warning("convert::variants", &Span::default(), message);
+        export.diagnostics.push(note.consequence("the one that is shown is written"));
     }
+    export
 }
 
 /// The files that the meshes and images of a scene were read from, if they have names of files.
