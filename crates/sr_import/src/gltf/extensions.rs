@@ -57,7 +57,7 @@ pub const EXTENSIONS: &[(&str, Support)] = &[
     ("KHR_materials_variants", Done),
     ("KHR_materials_volume", Approximated("attenuation colors the surface, by the stated thickness")),
     ("KHR_mesh_quantization", Done),
-    ("KHR_texture_basisu", Done),
+    ("KHR_texture_basisu", Reported("the other image of the texture is used, if there is one")),
     ("KHR_texture_transform", Done),
     ("KHR_xmp_json_ld", Done),
 ];

@@ -144,11 +144,10 @@ impl<'v> Document<'v, '_> {
     }
 }
 
-/// The image that a texture shows: that of an extension before that for those who do not know it.
+/// The image that a texture shows: one that is read before one that is not.
 pub fn source(texture: &Value) -> Option<&Value> {
-    let packed = ["EXT_texture_webp", "KHR_texture_basisu"];
-    let packed = packed.into_iter().find_map(|name| texture.extension(name)?.get("source"));
-    packed.or_else(|| texture.get("source"))
+    let webp = texture.extension("EXT_texture_webp").and_then(|webp| webp.get("source"));
+    webp.or_else(|| texture.get("source"))
 }
 
 pub fn channels(image: &Image) -> usize {

@@ -1,9 +1,8 @@
 //! Image files to [`Image`]s.
 //!
-//! - `basis`: textures of Basis Universal. `below_coat`: albedos below pbrt's coats.
+//! - `below_coat`: albedos below pbrt's coats.
 //! - `texels`: numbers that are worked out from those of a file.
 
-mod basis;
 mod below_coat;
 mod texels;
 
@@ -60,15 +59,8 @@ pub fn decode_bytes(path: &Path, bytes: &[u8], decode: Decode) -> Result<Image, 
         let (width, height, pixels) = pfm::decode(bytes, MAX_TEXELS)?;
         (width, height, linear(pixels))
     } else {
-        let image = if jpeg::is_jpeg(bytes) {
-            jpeg::decode(bytes, MAX_TEXELS)?
-        } else if basis::is_ktx2(bytes) {
-            let (width, height) = basis::size(bytes).ok_or("it ends in its header")?;
-            check_size(width.into(), height.into())?;
-            basis::decode(bytes)?
-        } else {
-            open_other(path, bytes)?
-        };
+        let image =
+            if jpeg::is_jpeg(bytes) { jpeg::decode(bytes, MAX_TEXELS)? } else { open_other(path, bytes)? };
         (image.width(), image.height(), convert(image, decode))
     };
     Ok(Image { name: path.display().to_string(), width, height, pixels })
@@ -76,9 +68,7 @@ pub fn decode_bytes(path: &Path, bytes: &[u8], decode: Decode) -> Result<Image, 
 
 /// How many texels an image has by its header; 0 if that cannot be read, as the image cannot then.
 pub fn texels(path: &Path, bytes: &[u8]) -> u64 {
-    let size = if basis::is_ktx2(bytes) {
-        basis::size(bytes).map(|(width, height)| (width.into(), height.into()))
-    } else if pfm::is_pfm(bytes) {
+    let size = if pfm::is_pfm(bytes) {
         // Floats of at least one channel.
         return bytes.len() as u64 / 4;
     } else if bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
@@ -126,7 +116,7 @@ fn no_image(extension: &str, bytes: &[u8]) -> String {
     let named = if known { format!("it is named .{extension} but is none: ") } else { String::new() };
     let start: String = String::from_utf8_lossy(&bytes[..bytes.len().min(24)]).escape_debug().collect();
     format!(
-        "{named}its format is not known (PNG, JPEG, BMP, TGA, HDR, PFM, PNM, WebP, KTX2, TIFF and OpenEXR are); \
+        "{named}its format is not known (PNG, JPEG, BMP, TGA, HDR, PFM, PNM, WebP, TIFF and OpenEXR are); \
          it begins with \"{start}\""
     )
 }
