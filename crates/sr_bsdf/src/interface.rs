@@ -35,12 +35,21 @@ pub fn dielectric(cos_i: f32, eta: f32) -> DielectricSplit {
         return DielectricSplit { reflectance: 1.0, transmittance: 0.0, cos_t: 0.0, eta };
     }
     let cos_t = cos_t_squared.sqrt();
+    let transmittance = transmittance(c, cos_t, eta);
+    DielectricSplit { reflectance: 1.0 - transmittance, transmittance, cos_t, eta }
+}
+
+/// The fraction of unpolarised light that passes between two directions that refraction joins, the same in either direction.
+///
+/// - `c`, `cos_t`: cosines between the normal and the directions, not negative, not both 0
+/// - `eta`: index of the far side (of `cos_t`) over that of the near side
+#[inline(always)]
+pub(crate) fn transmittance(c: f32, cos_t: f32, eta: f32) -> f32 {
     // Of the squared field, light polarised across (s) and in (p) the plane of incidence loses 4 c η cₜ over
     // (c + η cₜ)² and (η c + cₜ)² to the far side.
     let (s, p) = (c + eta * cos_t, eta * c + cos_t);
     let both = s * p;
-    let transmittance = (2.0 * c * eta * cos_t * ((s * s + p * p) / (both * both))).min(1.0);
-    DielectricSplit { reflectance: 1.0 - transmittance, transmittance, cos_t, eta }
+    (2.0 * c * eta * cos_t * ((s * s + p * p) / (both * both))).min(1.0)
 }
 
 /// The fraction of light that a conductor reflects (Fresnel's equations, unpolarised).

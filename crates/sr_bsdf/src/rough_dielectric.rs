@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::interface::{dielectric, reflect_about, refract_about};
+use crate::interface::{dielectric, reflect_about, refract_about, transmittance};
 use crate::microfacet::Facet;
 use crate::{Bsdf, BsdfSample, Lobes, Microfacet, MicrofacetKind, MicrofacetShape, Rgb};
 
@@ -69,7 +69,8 @@ pub(crate) fn refracting_facet(wo: Vec3, wi: Vec3, eta: f32) -> Option<Refractin
     if cos_o <= 0.0 || cos_i <= 0.0 || length_squared == 0.0 {
         return None;
     }
-    let factor = dielectric(cos_o, eta).transmittance * cos_i / length_squared;
+    // From both cosines: one would have to be worked out from the other, which near the critical angle is all rounding.
+    let factor = transmittance(cos_o, cos_i, eta) * cos_i / length_squared;
     Some(RefractingFacet { m, factor, cos_o })
 }
 
