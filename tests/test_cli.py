@@ -236,6 +236,10 @@ def test_a_folder_that_takes_no_files_is_found_before_rendering(cornell_path, tm
         (["render", "s.xml", "--exposure", "inf"], ["--exposure"]),
         (["render", "s.xml", "--define", "spp"], ["NAME=VALUE"]),
         (["render", "s.xml", "--sp", "3"], ["--sp"]),
+        (["info", "s.xml", "--limit", "texels=5"], ["texels", "image_texels"]),
+        (["info", "s.xml", "--limit", "image_texels"], ["NAME=VALUE"]),
+        (["info", "s.xml", "--limit", "image_texels=2T"], ["'image_texels=2T'", "NAME=VALUE"]),
+        (["info", "s.xml", "--limit", "image_texels=-1K"], ["image_texels", "above 0"]),
     ],
 )
 def test_command_lines_that_make_no_sense_exit_with_2(tmp_path, arguments, words):
@@ -357,6 +361,15 @@ def test_every_file_of_the_package_has_a_docstring():
     assert len(files) > 10, "no files, no evidence"
     for file in files:
         assert ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))), file
+
+
+def test_limits_are_options(tmp_path):
+    (tmp_path / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\n" + "f 1 2 3\n" * 1025)
+    for command in (["render", *FAST], ["info"], ["convert", "out.xml"]):
+        name, *rest = command
+        limited = [name, "a.obj", *rest, "--limit", "file_bytes=1G", "--limit", "mesh_elements=1k"]
+        assert "--limit mesh_elements=N" in run(*limited, cwd=tmp_path, check=1).stderr
+        run(*limited[:-1], "mesh_elements=2K", cwd=tmp_path, check=0)
 
 
 def test_files_are_looked_for_in_search_paths(tmp_path):

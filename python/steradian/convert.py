@@ -11,6 +11,7 @@ from typing import Any
 
 from steradian import _internal, _jobs
 from steradian.diagnostics import Diagnostic, SceneError, SceneWarning
+from steradian.limits import checked_limits
 from steradian.scene import as_text, checked_folders, checked_threads
 
 
@@ -49,6 +50,7 @@ def convert(
     *,
     defines: Mapping[str, Any] | None = None,
     search_paths: Iterable[str | os.PathLike[str]] = (),
+    limits: Mapping[str, float] | None = None,
     own_plugins: bool = False,
     overwrite: bool = False,
     threads: int | None = None,
@@ -76,6 +78,7 @@ def convert(
             (glTF 2.0).
         defines: values for the file's ``$name``, over its own defaults.
         search_paths: folders for files that are neither beside the scene nor where it says.
+        limits: how much is taken in, as for :func:`steradian.load`.
         own_plugins: may XML name what Steradian has and Mitsuba has not? Then Mitsuba does not read it;
             otherwise the nearest that Mitsuba has is written.
         overwrite: may files that are there be replaced? Those that the scene is read from never are.
@@ -94,6 +97,7 @@ def convert(
         out,
         defines=defines,
         search_paths=search_paths,
+        limits=limits,
         own_plugins=own_plugins,
         overwrite=overwrite,
         threads=threads,
@@ -111,6 +115,7 @@ def convert_with_diagnostics(
     *,
     defines: Mapping[str, Any] | None = None,
     search_paths: Iterable[str | os.PathLike[str]] = (),
+    limits: Mapping[str, float] | None = None,
     own_plugins: bool = False,
     overwrite: bool = False,
     threads: int | None = None,
@@ -120,15 +125,16 @@ def convert_with_diagnostics(
     texts = {str(name): as_text(value) for name, value in (defines or {}).items()}
     threads = checked_threads(threads)
     folders = checked_folders(search_paths)
+    most = checked_limits(limits)
     path = os.fspath(out)
     if isinstance(source, Mapping):
         if texts:
             raise ValueError("a dictionary has no $names: put the values in, instead of giving defines")
-        job = _internal.convert_dict(dict(source), folders, path, own_plugins, overwrite, threads)
+        job = _internal.convert_dict(dict(source), folders, most, path, own_plugins, overwrite, threads)
     else:
         name = os.fspath(source)
         pairs = list(texts.items())
-        job = _internal.convert_file(name, pairs, folders, path, own_plugins, overwrite, threads)
+        job = _internal.convert_file(name, pairs, folders, most, path, own_plugins, overwrite, threads)
     _jobs.wait(job)
     files, found, report, seconds = job.result(color)
     diagnostics = tuple(Diagnostic(**fields) for fields in found)

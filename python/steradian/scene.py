@@ -10,6 +10,7 @@ from typing import Any
 
 from steradian import _internal, _jobs
 from steradian.diagnostics import Diagnostic, SceneError, SceneWarning
+from steradian.limits import checked_limits
 
 
 @dataclass(frozen=True)
@@ -77,6 +78,7 @@ def load(
     defines: Mapping[str, Any] | None = None,
     search_paths: Iterable[str | os.PathLike[str]] = (),
     environment: str | os.PathLike[str] | None = None,
+    limits: Mapping[str, float] | None = None,
     threads: int | None = None,
 ) -> Scene:
     """Loads a scene.
@@ -95,6 +97,8 @@ def load(
         environment: an image of latitude and longitude (HDR or EXR), +Y up, put around the scene, as
             Mitsuba's ``envmap``; then no default light is needed. A scene with an environment of its own is
             lit by both, which is said.
+        limits: how much is taken in, such as ``{"image_texels": 2**30}``, over the defaults in
+            ``docs/import.md``. An error about a limit names it.
         threads: threads to decode and compile with; all available cores unless given.
 
     Warns:
@@ -102,11 +106,17 @@ def load(
 
     Raises:
         SceneError: if there is no scene; the message says why, with file, line and remedy.
+        ValueError: if there is no limit of a name, or it cannot be set so.
         NotADirectoryError: if one of ``search_paths`` is no folder.
         KeyboardInterrupt: on Ctrl-C, while loading.
     """
     loaded = load_with_diagnostics(
-        source, defines=defines, search_paths=search_paths, environment=environment, threads=threads
+        source,
+        defines=defines,
+        search_paths=search_paths,
+        environment=environment,
+        limits=limits,
+        threads=threads,
     )
     if loaded.scene is None:
         raise SceneError(loaded.report.strip(), loaded.diagnostics)
@@ -121,21 +131,23 @@ def load_with_diagnostics(
     defines: Mapping[str, Any] | None = None,
     search_paths: Iterable[str | os.PathLike[str]] = (),
     environment: str | os.PathLike[str] | None = None,
+    limits: Mapping[str, float] | None = None,
     threads: int | None = None,
     color: bool = False,
 ) -> Loaded:
     """As :func:`load`, but what is wrong is returned; ``color`` adds ANSI escapes to the report."""
     texts = {str(name): as_text(value) for name, value in (defines or {}).items()}
     folders = checked_folders(search_paths)
+    most = checked_limits(limits)
     around = None if environment is None else os.fspath(environment)
     if isinstance(source, Mapping):
         name = "<dict>"
         if texts:
             raise ValueError("a dictionary has no $names: put the values in, instead of giving defines")
-        job = _internal.load_dict(dict(source), folders, around, checked_threads(threads))
+        job = _internal.load_dict(dict(source), folders, around, most, checked_threads(threads))
     else:
         name = os.fspath(source)
-        job = _internal.load_file(name, list(texts.items()), folders, around, checked_threads(threads))
+        job = _internal.load_file(name, list(texts.items()), folders, around, most, checked_threads(threads))
     _jobs.wait(job)
     compiled, found, report, seconds = job.result(color)
     diagnostics = tuple(Diagnostic(**fields) for fields in found)

@@ -10,6 +10,7 @@ use sr_render::CompileError;
 use sr_scene::{Diagnostic, Diagnostics, SceneDesc, Span};
 
 use crate::job::Job;
+use crate::limits::{self, Named};
 use crate::node;
 use crate::scene::Scene;
 
@@ -53,11 +54,13 @@ pub fn load_file(
     defines: Vec<(String, String)>,
     search_paths: Vec<PathBuf>,
     environment: Option<PathBuf>,
+    limits: Named,
     threads: usize,
 ) -> PyResult<LoadJob> {
+    let options = LoadOptions { defines, search_paths, environment, limits: limits::limits(limits)? };
     let job = Job::start(threads, move || {
         let start = Instant::now();
-        let (desc, diagnostics) = sr_import::load(&path, &LoadOptions { defines, search_paths, environment });
+        let (desc, diagnostics) = sr_import::load(&path, &options);
         Ok(compiled(desc, diagnostics, start))
     })?;
     Ok(LoadJob(job))
@@ -69,12 +72,13 @@ pub fn load_dict(
     dict: &Bound<'_, PyDict>,
     search_paths: Vec<PathBuf>,
     environment: Option<PathBuf>,
+    limits: Named,
     threads: usize,
 ) -> PyResult<LoadJob> {
     let start = Instant::now();
     let (node, mut diagnostics) = node::from_dict(dict)?;
     let directories = std::iter::once(PathBuf::new()).chain(search_paths).collect();
-    let origin = Origin { legacy: false, directories, environment };
+    let origin = Origin { legacy: false, directories, environment, limits: limits::limits(limits)? };
     let job = Job::start(threads, move || {
         let desc = match diagnostics.has_errors() {
             true => None,

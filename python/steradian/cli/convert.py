@@ -31,6 +31,7 @@ def convert(arguments: argparse.Namespace) -> int:
             out,
             defines=dict(arguments.define),
             search_paths=arguments.search_path,
+            limits=dict(arguments.limit),
             own_plugins=arguments.own_plugins,
             overwrite=arguments.force,
             threads=arguments.threads,

@@ -16,6 +16,7 @@ def load(arguments: argparse.Namespace) -> Scene | None:
         arguments.scene,
         defines=dict(arguments.define),
         search_paths=arguments.search_path,
+        limits=dict(arguments.limit),
         environment=arguments.environment,
         threads=getattr(arguments, "threads", None),
         color=sys.stderr.isatty() and not os.environ.get("NO_COLOR"),

@@ -23,6 +23,7 @@ use sr_scene::{
 
 use crate::files;
 use crate::images::Decode;
+use crate::limits::Limits;
 use crate::mesh::Placement;
 
 pub use camera::{FRONT_ABOVE, default_film};
@@ -50,6 +51,8 @@ pub struct Assembly<'d> {
     pub lights: Vec<LightDesc>,
     /// An image of latitude and longitude, +Y up, that the scene does not name and is lit by.
     pub environment: Option<PathBuf>,
+    /// How much is taken in.
+    pub limits: Limits,
     images: Vec<ImageSlot>,
     image_files: HashMap<(PathBuf, Decode), u32>,
     textures: Vec<TextureDesc>,
@@ -61,7 +64,7 @@ pub struct Assembly<'d> {
 
 impl<'d> Assembly<'d> {
     /// An empty scene; files are looked for in `directories`.
-    pub fn new(directories: Vec<PathBuf>, d: &'d mut Diagnostics) -> Self {
+    pub fn new(directories: Vec<PathBuf>, limits: Limits, d: &'d mut Diagnostics) -> Self {
         Self {
             d,
             directories,
@@ -72,6 +75,7 @@ impl<'d> Assembly<'d> {
             instances: Vec::new(),
             lights: Vec::new(),
             environment: None,
+            limits,
             images: Vec::new(),
             image_files: HashMap::new(),
             textures: Vec::new(),

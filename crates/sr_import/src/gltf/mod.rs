@@ -27,6 +27,7 @@ use std::path::PathBuf;
 
 use sr_scene::{Diagnostic, Diagnostics, SceneDesc, Span};
 
+use crate::LoadOptions;
 use crate::assembly::Assembly;
 use document::Document;
 
@@ -35,10 +36,11 @@ pub fn load(
     name: &str,
     bytes: Vec<u8>,
     directories: Vec<PathBuf>,
-    environment: Option<PathBuf>,
+    options: &LoadOptions,
     d: &mut Diagnostics,
 ) -> Option<SceneDesc> {
-    let container = match container::read(bytes) {
+    let limits = options.limits;
+    let container = match container::read(bytes, limits.scene_bytes) {
         Ok(container) => container,
         Err(reason) => {
             let source = d.sources.add(name, "");
@@ -48,7 +50,7 @@ pub fn load(
         }
     };
     let source = d.sources.add(name, container.json.as_str());
-    let root = match json::parse(&container.json, source) {
+    let root = match json::parse(&container.json, source, limits.gltf_values) {
         Ok(root) => root,
         Err((at, reason)) => {
             let span = Span { source, bytes: at..(at + 1).min(container.json.len()) };
@@ -58,8 +60,8 @@ pub fn load(
     };
     drop(container.json);
     let span = Span { source, bytes: 0..0 };
-    let mut document = Document::new(&root, container.binary, Assembly::new(directories, d));
-    document.out.environment = environment;
+    let mut document = Document::new(&root, container.binary, Assembly::new(directories, limits, d));
+    document.out.environment.clone_from(&options.environment);
     extensions::report(&root, document.out.d);
     properties::report(&root, document.out.d);
     document.scene();

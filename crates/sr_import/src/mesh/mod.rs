@@ -18,9 +18,7 @@ use std::sync::Arc;
 use sr_scene::MeshDesc;
 
 use crate::files;
-
-/// More vertices or triangles than this are refused.
-const MAX_ELEMENTS: usize = 1 << 28;
+use crate::limits::Limits;
 
 /// How to read a mesh file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -37,13 +35,14 @@ pub enum Format {
 }
 
 /// Reads a file; the error is half a sentence.
-pub fn load(path: &Path, format: Format, flip_v: bool) -> Result<RawMesh, String> {
-    let whole = || files::unpacked(files::read(path, files::MAX_FILE_BYTES)?, files::MAX_UNPACKED_BYTES);
+pub fn load(path: &Path, format: Format, flip_v: bool, limits: &Limits) -> Result<RawMesh, String> {
+    let Limits { file_bytes, unpacked_bytes, mesh_elements: limit, .. } = *limits;
+    let whole = || files::unpacked(files::read(path, file_bytes)?, unpacked_bytes);
     let mut fans = Fans::default();
     let mut mesh = match format {
-        Format::Obj => obj::parse(&whole()?, &mut fans)?,
-        Format::Ply => ply::parse(files::open(path, files::MAX_UNPACKED_BYTES)?, &mut fans)?,
-        Format::Serialized { index } => serialized::parse(&whole()?, index)?,
+        Format::Obj => obj::parse(&whole()?, &mut fans, limit)?,
+        Format::Ply => ply::parse(files::open(path, file_bytes, unpacked_bytes)?, &mut fans, limit)?,
+        Format::Serialized { index } => serialized::parse(&whole()?, index, limit)?,
     };
     mesh.name = path.display().to_string();
     if flip_v {

@@ -9,6 +9,7 @@ use sr_scene::{ColorInput, Diagnostic, MeshColorOf, MeshDesc, TextureDesc};
 use super::mtl::{self, Mtl};
 use super::{GREY, MeshScene, as_it_is};
 use crate::files;
+use crate::limits::{Limit, Limits};
 use crate::mesh::{normals, obj};
 use crate::values::shown;
 
@@ -17,8 +18,9 @@ const MAX_MTL_BYTES: u64 = 64 << 20;
 
 impl MeshScene<'_, '_> {
     pub(super) fn obj(&mut self) -> Result<(), String> {
-        let bytes = files::read(self.path, files::MAX_FILE_BYTES)?;
-        let mut file = obj::parse_covered(&files::unpacked(bytes, files::MAX_UNPACKED_BYTES)?)?;
+        let Limits { file_bytes, unpacked_bytes, mesh_elements, .. } = self.out.limits;
+        let bytes = files::read(self.path, file_bytes)?;
+        let mut file = obj::parse_covered(&files::unpacked(bytes, unpacked_bytes)?, mesh_elements)?;
         if file.some_colors {
             let message = "some vertices have colors and some have none";
             let warning = Diagnostic::warning("obj::vertex-colors", &self.span, message);
@@ -78,7 +80,7 @@ impl MeshScene<'_, '_> {
             }
             done.push(name);
             let path = self.out.find(&name.replace('\\', "/"));
-            match files::read(&path, left) {
+            match files::read(&path, Limit::fixed(left)) {
                 Ok(bytes) => {
                     left -= bytes.len() as u64;
                     let text = String::from_utf8_lossy(&bytes).into_owned();

@@ -11,7 +11,8 @@ use crate::values::srgb_to_linear;
 
 impl MeshScene<'_, '_> {
     pub(super) fn ply(&mut self) -> Result<(), String> {
-        let mut mesh = Arc::unwrap_or_clone(mesh::load(self.path, Format::Ply, false)?.mesh);
+        let mut mesh =
+            Arc::unwrap_or_clone(mesh::load(self.path, Format::Ply, false, &self.out.limits)?.mesh);
         let of = match (mesh.vertex_colors.is_empty(), mesh.face_colors.is_empty()) {
             (false, _) => Some(MeshColorOf::Vertices),
             (true, false) => Some(MeshColorOf::Faces),
