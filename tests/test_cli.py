@@ -124,6 +124,23 @@ def test_warnings_go_to_standard_error_and_the_image_is_written(tmp_path):
     assert "mitsuba::unknown-property" in [d["code"] for d in value["diagnostics"]]
 
 
+def test_info_tells_what_is_approximated_from_what_is_ignored(tmp_path):
+    (tmp_path / "scene.pbrt").write_text(
+        'Camera "perspective" Integrator "bdpt" WorldBegin LightSource "infinite"\n'
+        'Material "measured" "string filename" "a.bsdf" Shape "sphere" "float raduis" 2\n'
+        'Shape "sphere" "float raduis" 2 MakeNamedMedium "fog" "string type" "homogeneous"\n'
+    )
+    done = run("info", "scene.pbrt", cwd=tmp_path, check=0)
+    lines = dict(line.split(maxsplit=1) for line in done.stdout.splitlines() if "::" in line)
+    value = json.loads(run("info", "scene.pbrt", "--json", cwd=tmp_path, check=0).stdout)
+    effects = {d["consequence"]: d["effect"] for d in value["diagnostics"]}
+    assert set(effects.values()) == {"approximated", "ignored"}, effects
+    assert effects["it is ignored"] == effects["its inside is rendered as empty space"] == "ignored"
+    for effect in ("approximated", "ignored"):
+        assert sum(value[effect].values()) == sum(d["effect"] == effect for d in value["diagnostics"]) > 0
+        assert all(f"{count} x {code}" in lines[effect] for code, count in value[effect].items())
+
+
 def test_strict_fails_on_warnings(cornell_path, tmp_path):
     (tmp_path / "scene.xml").write_text(WARNED)
     for command in (["render", *FAST], ["info"], ["convert", "--own-plugins", "out.xml"]):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -51,13 +52,19 @@ class Scene:
         return SceneSettings(**self._compiled.settings())
 
     def info(self) -> dict[str, Any]:
-        """Camera, film, counts, bounds and memory, as plain values that ``json`` can write."""
+        """Camera, film, counts, bounds, memory, and what is approximated or ignored, as plain values for ``json``."""
         return {
             "scene": self.name,
             "load_seconds": self.load_seconds,
             **self._compiled.info(),
+            "approximated": self._codes("approximated"),
+            "ignored": self._codes("ignored"),
             "diagnostics": [vars(d) for d in self.diagnostics],
         }
+
+    def _codes(self, effect: str) -> dict[str, int]:
+        """How often each code of diagnostics of an effect occurs, the most frequent first."""
+        return dict(Counter(d.code for d in self.diagnostics if d.effect == effect).most_common())
 
     def __repr__(self) -> str:
         return f"<steradian.Scene {self.name}: {self._compiled.info()['triangles']} triangles>"

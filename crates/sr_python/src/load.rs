@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use sr_import::{LoadOptions, Origin};
 use sr_render::CompileError;
-use sr_scene::{Diagnostic, Diagnostics, SceneDesc, Span};
+use sr_scene::{Diagnostic, Diagnostics, Effect, SceneDesc, Span};
 
 use crate::job::Job;
 use crate::limits::{self, Named};
@@ -119,6 +119,11 @@ pub fn fields<'py>(py: Python<'py>, diagnostic: &Diagnostic, all: &Diagnostics) 
     dict.set_item("column", column)?;
     dict.set_item("hint", hint)?;
     dict.set_item("consequence", consequence)?;
+    let effect = diagnostic.effect().map(|effect| match effect {
+        Effect::Approximated => "approximated",
+        Effect::Ignored => "ignored",
+    });
+    dict.set_item("effect", effect)?;
     dict.set_item("text", all.one_line(diagnostic))?;
     Ok(dict)
 }

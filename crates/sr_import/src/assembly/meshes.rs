@@ -232,7 +232,11 @@ fn taken(
     match &mut mesh.source {
         MeshSource::Memory(desc) => {
             let name = MeshDesc { name: desc.name.clone(), ..MeshDesc::default() };
-            Ok(RawMesh { mesh: std::mem::replace(desc, Arc::new(name)), fans: [].into() })
+            Ok(RawMesh {
+                mesh: std::mem::replace(desc, Arc::new(name)),
+                fans: [].into(),
+                textures: [].into(),
+            })
         }
         MeshSource::File { path, format, flip_v } => files
             .get(&(path.clone(), *format, *flip_v))

@@ -39,16 +39,22 @@ pub fn load(path: &Path, format: Format, flip_v: bool, limits: &Limits) -> Resul
     let Limits { file_bytes, unpacked_bytes, mesh_elements: limit, .. } = *limits;
     let whole = || files::unpacked(files::read(path, file_bytes)?, unpacked_bytes);
     let mut fans = Fans::default();
+    let mut textures = Vec::new();
     let mut mesh = match format {
         Format::Obj => obj::parse(&whole()?, &mut fans, limit)?,
-        Format::Ply => ply::parse(files::open(path, file_bytes, unpacked_bytes)?, &mut fans, limit)?,
+        Format::Ply => {
+            let content = files::open(path, file_bytes, unpacked_bytes)?;
+            let file = ply::parse(content, &mut fans, limit)?;
+            textures = file.textures;
+            file.mesh
+        }
         Format::Serialized { index } => serialized::parse(&whole()?, index, limit)?,
     };
     mesh.name = path.display().to_string();
     if flip_v {
         mesh.uvs.iter_mut().for_each(|uv| uv.y = 1.0 - uv.y);
     }
-    Ok(RawMesh { mesh: Arc::new(mesh), fans: fans.0.into() })
+    Ok(RawMesh { mesh: Arc::new(mesh), fans: fans.0.into(), textures: textures.into() })
 }
 
 /// A mesh as it was read.
@@ -58,6 +64,8 @@ pub struct RawMesh {
     pub mesh: Arc<MeshDesc>,
     /// How many of its triangles each polygon was made into, one after another; empty if every polygon is a triangle.
     pub fans: Arc<[u32]>,
+    /// Images that it names for itself.
+    pub textures: Arc<[String]>,
 }
 
 /// [`RawMesh::fans`] as they grow: nothing is kept as long as there are triangles only.

@@ -16,6 +16,9 @@ use crate::values::shown;
 /// More bytes of materials are refused, in all files together.
 const MAX_MTL_BYTES: u64 = 64 << 20;
 
+/// More files of materials are not read.
+const MAX_LIBRARIES: usize = 256;
+
 impl MeshScene<'_, '_> {
     pub(super) fn obj(&mut self) -> Result<(), String> {
         let Limits { file_bytes, unpacked_bytes, mesh_elements, .. } = self.out.limits;
@@ -75,8 +78,19 @@ impl MeshScene<'_, '_> {
         let mut left = MAX_MTL_BYTES;
         let mut done: Vec<&str> = Vec::new();
         for name in names {
-            if done.contains(&name.as_str()) || done.len() >= 256 {
+            if done.contains(&name.as_str()) {
                 continue;
+            }
+            if done.len() >= MAX_LIBRARIES {
+                let message = format!(
+                    "more than {MAX_LIBRARIES} files of materials are named, \"{}\" after these",
+                    shown(name)
+                );
+                let warning = Diagnostic::warning("obj::no-library", &self.span, message);
+                self.out.d.push(
+                    warning.consequence("it is not read, nor what follows; what they would cover is grey"),
+                );
+                break;
             }
             done.push(name);
             let path = self.out.find(&name.replace('\\', "/"));
