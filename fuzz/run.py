@@ -46,7 +46,8 @@ BUFFER = struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0) + bytes([0, 1, 2]) + byte
 CURVES = b"\4" + b"0 0 0 .1\n1 0 0 .1\n2 0 0 .2\n3 1 0 .1\n\n0 1 0 1\n1 1 0 1\n1 1 1 1\n2 2 2 1e-3 5\n"
 """Two curves, for ``it.txt``."""
 HAIR = """<scene version="3.0.0"><sensor type="perspective"/><emitter type="constant"/>
-<shape type="cylinder"><bsdf type="hair"><float name="eumelanin" value="1.3"/><float name="pheomelanin" value=".2"/>
+<shape type="cylinder"><bsdf type="hair"><float name="eumelanin" value="1.3"/>
+<float name="pheomelanin" value=".2"/>
 <float name="longitudinal_roughness" value=".3"/><float name="azimuthal_roughness" value=".3"/>
 <float name="scale_tilt" value="2"/><float name="int_ior" value="1.55"/></bsdf></shape>
 <shape type="linearcurve"><string name="filename" value="curves.txt"/></shape></scene>
@@ -57,7 +58,8 @@ Attribute "shape" "float width0" 0.1
 Shape "curve" "string type" "ribbon" "point3 P" [ 0 0 0 1 0 0 1 1 0 2 1 0 ] "normal N" [ 0 0 1 0 1 0 ]
 Shape "curve" "string basis" "bspline" "integer degree" 2 "integer splitdepth" 1 "float width1" 0
   "point3 P" [ 0 0 0 1 0 0 1 1 0 2 1 0 3 0 0 ]
-Material "hair" "rgb color" [ 0.5 0.3 0.1 ] Shape "curve" "string type" "flat" "point3 P" [ 0 0 0 1 0 0 1 1 0 2 1 0 ]
+Material "hair" "rgb color" [ 0.5 0.3 0.1 ]
+Shape "curve" "string type" "flat" "point3 P" [ 0 0 0 1 0 0 1 1 0 2 1 0 ]
 """
 MTL = """newmtl b
 Kd 0.5 0.4 0.3

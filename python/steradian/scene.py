@@ -52,7 +52,7 @@ class Scene:
         return SceneSettings(**self._compiled.settings())
 
     def info(self) -> dict[str, Any]:
-        """Camera, film, counts, bounds, memory, and what is approximated or ignored, as plain values for ``json``."""
+        """Camera, film, counts, bounds, memory and what is not as asked, as plain values for ``json``."""
         return {
             "scene": self.name,
             "load_seconds": self.load_seconds,

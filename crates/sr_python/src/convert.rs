@@ -53,6 +53,7 @@ struct Request {
 
 /// Starts to convert a file; `defines` override the file's own defaults; `threads` of 0 are all.
 #[pyfunction]
+#[allow(clippy::too_many_arguments)]
 pub fn convert_file(
     path: PathBuf,
     defines: Vec<(String, String)>,
