@@ -14,8 +14,7 @@ const SCENES: [(&str, &str); 5] = [
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     let Some((which, bytes)) = bytes.split_first() else { return };
-    let (name, used) = SCENES[*which as usize % SCENES.len()    ("it.txt", r#"<shape type="bsplinecurve"><string name="filename" value="it.txt"/></shape>"#),
-];
+    let (name, used) = SCENES[*which as usize % SCENES.len()];
     let scene = format!(r#"<scene version="3.0.0"><sensor type="perspective"/>{used}</scene>"#);
     sr_fuzz::load("scene.xml", scene.as_bytes(), &[(name, bytes)]);
 });
