@@ -30,10 +30,11 @@ SOURCES = {
     "pbrt": "src/pbrt",
     "gltf": "src/gltf",
     "ply": "src/mesh/ply",
-    "obj": "src/mesh/obj.rs",
+    "obj": "src/mesh/obj.rs src/mesh_file/mtl.rs src/mesh_file/cover.rs",
+    "stl": "src/mesh/stl.rs",
     "referenced": "src/ies.rs",
 }
-"""Where the words of a format are."""
+"""The files and folders where the words of a format are."""
 
 TOO_LARGE_TO_KEEP = 1500
 """Bytes: larger files are not kept."""
@@ -41,6 +42,49 @@ KEPT = 120
 """At most so many files of a format are kept, the largest."""
 BUFFER = struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0) + bytes([0, 1, 2]) + bytes(45)
 """A triangle's corners and indices, and what else the glTF seeds read."""
+
+CURVES = b"\4" + b"0 0 0 .1\n1 0 0 .1\n2 0 0 .2\n3 1 0 .1\n\n0 1 0 1\n1 1 0 1\n1 1 1 1\n2 2 2 1e-3 5\n"
+"""Two curves, for ``it.txt``."""
+HAIR = """<scene version="3.0.0"><sensor type="perspective"/><emitter type="constant"/>
+<shape type="cylinder"><bsdf type="hair"><float name="eumelanin" value="1.3"/>
+<float name="pheomelanin" value=".2"/>
+<float name="longitudinal_roughness" value=".3"/><float name="azimuthal_roughness" value=".3"/>
+<float name="scale_tilt" value="2"/><float name="int_ior" value="1.55"/></bsdf></shape>
+<shape type="linearcurve"><string name="filename" value="curves.txt"/></shape></scene>
+"""
+PBRT_HAIR = """Camera "perspective" WorldBegin LightSource "infinite"
+Material "hair" "float eumelanin" 1.3 "float beta_m" 0.3 "float beta_n" 0.3 "float alpha" 2 "float eta" 1.55
+Attribute "shape" "float width0" 0.1
+Shape "curve" "string type" "ribbon" "point3 P" [ 0 0 0 1 0 0 1 1 0 2 1 0 ] "normal N" [ 0 0 1 0 1 0 ]
+Shape "curve" "string basis" "bspline" "integer degree" 2 "integer splitdepth" 1 "float width1" 0
+  "point3 P" [ 0 0 0 1 0 0 1 1 0 2 1 0 3 0 0 ]
+Material "hair" "rgb color" [ 0.5 0.3 0.1 ]
+Shape "curve" "string type" "flat" "point3 P" [ 0 0 0 1 0 0 1 1 0 2 1 0 ]
+"""
+MTL = """newmtl b
+Kd 0.5 0.4 0.3
+Ks 1 1 1
+Ns 200
+Ni 1.5
+d 0.5
+Ke 0 0 2
+illum 7
+Tf 0.9 1 1
+Pr 0.3
+Pm 1
+map_Kd -s 2 2 1 -o 0.1 0 0 -clamp on a.png
+map_bump -bm 0.5 a.png
+"""
+STL = """solid a
+facet normal 0 0 1
+outer loop
+vertex 0 0 0
+vertex 1 0 0
+vertex 0 1 0
+endloop
+endfacet
+endsolid a
+"""
 
 
 def main() -> int:
@@ -102,8 +146,8 @@ def keep(name: str, found: Path) -> None:
 
 def words_of(name: str) -> list[str]:
     """The strings in the sources of a format that can be keywords."""
-    path = IMPORT / SOURCES[name]
-    files = [path] if path.is_file() else sorted(path.rglob("*.rs"))
+    paths = [IMPORT / path for path in SOURCES[name].split()]
+    files = [file for path in paths for file in ([path] if path.is_file() else sorted(path.rglob("*.rs")))]
     found = {word for file in files for word in re.findall(r'"([\w:./-]{2,40})"', file.read_text())}
     numbers = ["1e39", "-1", "0", "nan", "inf", "4294967295", "9223372036854775807", "1e-320"]
     return sorted(found) + numbers
@@ -115,21 +159,27 @@ def seeds_of(name: str) -> list[bytes]:
     match name:
         case "mitsuba":
             files = [*ROOT.glob("scenes/*.xml"), *ROOT.glob("scenes/gallery/*.xml"), *data.glob("*.xml")]
-            return [file.read_bytes() for file in files] + snippets("golden.rs", "<")
+            return [file.read_bytes() for file in files] + snippets("golden.rs", "<") + [HAIR.encode()]
         case "pbrt":
-            return [file.read_bytes() for file in data.glob("pbrt/*.pbrt")] + snippets("pbrt.rs", "")
+            files = [*data.glob("pbrt/*.pbrt")]
+            return [file.read_bytes() for file in files] + snippets("pbrt.rs", "") + [PBRT_HAIR.encode()]
         case "gltf":
             return [*snippets("gltf.rs", "{"), gltf(), glb()]
         case "ply":
             return [(data / "pbrt/square.ply").read_bytes(), binary_ply("little"), binary_ply("big")]
         case "obj":
             vertices = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 1\nvn 0 0 1\n"
-            return [vertices + b"f 1/1/1 2//1 -1/1\ng a\nusemtl b\nf 1 2 3 1\n"]
+            mesh = vertices + b"f 1/1/1 2//1 -1/1\ng a\nusemtl b\nf 1 2 3 1\n"
+            materials = [(data / "mesh/covered.mtl").read_bytes(), MTL.encode()]
+            return [mesh, *(b"mtllib a.mtl\n" + mesh + b"\0" + mtl for mtl in materials)]
+        case "stl":
+            return [(data / "mesh/box.stl").read_bytes(), STL.encode(), binary_stl()]
         case _:
             ies = (ROOT / "scenes/gallery/data/downlight.ies").read_bytes()
             pfm = (data / "pbrt/octahedral.pfm").read_bytes()
             serialized = struct.pack("<HH", 0x041C, 4) + bytes(40) + struct.pack("<QI", 0, 1)
-            return [b"\0" + serialized, b"\1" + ies, b"\2" + pfm[:2000], b"\3400 0.1\n500 0.5\n# end\n"]
+            spd = b"\3400 0.1\n500 0.5\n# end\n"
+            return [b"\0" + serialized, b"\1" + ies, b"\2" + pfm[:2000], spd, CURVES]
 
 
 def snippets(test: str, start: str) -> list[bytes]:
@@ -152,6 +202,12 @@ def binary_ply(order: str) -> bytes:
     body = b"".join(struct.pack(mark + "8fB", x, y, 0, 0, 0, 1, x, y, 9) for x, y in corners)
     faces = struct.pack(mark + "B3i", 3, 0, 1, 2) + struct.pack(mark + "B3i", 3, 0, 2, 3)
     return "\n".join(header).encode() + body + faces
+
+
+def binary_stl() -> bytes:
+    """Two facets, one with a color."""
+    facets = [(0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0), (0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 0, 5)]
+    return bytes(80) + struct.pack("<I", 2) + b"".join(struct.pack("<12fH", *facet) for facet in facets)
 
 
 def gltf(uri: str | None = "data:;base64," + base64.b64encode(BUFFER).decode()) -> bytes:

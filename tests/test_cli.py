@@ -126,6 +126,23 @@ def test_warnings_go_to_standard_error_and_the_image_is_written(tmp_path):
     assert "mitsuba::unknown-property" in [d["code"] for d in value["diagnostics"]]
 
 
+def test_info_tells_what_is_approximated_from_what_is_ignored(tmp_path):
+    (tmp_path / "scene.pbrt").write_text(
+        'Camera "perspective" Integrator "bdpt" WorldBegin LightSource "infinite"\n'
+        'Material "measured" "string filename" "a.bsdf" Shape "sphere" "float raduis" 2\n'
+        'Shape "sphere" "float raduis" 2 MakeNamedMedium "fog" "string type" "homogeneous"\n'
+    )
+    done = run("info", "scene.pbrt", cwd=tmp_path, check=0)
+    lines = dict(line.split(maxsplit=1) for line in done.stdout.splitlines() if "::" in line)
+    value = json.loads(run("info", "scene.pbrt", "--json", cwd=tmp_path, check=0).stdout)
+    effects = {d["consequence"]: d["effect"] for d in value["diagnostics"]}
+    assert set(effects.values()) == {"approximated", "ignored"}, effects
+    assert effects["it is ignored"] == effects["its inside is rendered as empty space"] == "ignored"
+    for effect in ("approximated", "ignored"):
+        assert sum(value[effect].values()) == sum(d["effect"] == effect for d in value["diagnostics"]) > 0
+        assert all(f"{count} x {code}" in lines[effect] for code, count in value[effect].items())
+
+
 def test_strict_fails_on_warnings(cornell_path, tmp_path):
     (tmp_path / "scene.xml").write_text(WARNED)
     for command in (["render", *FAST], ["info"], ["convert", "--own-plugins", "out.xml"]):
@@ -238,6 +255,10 @@ def test_a_folder_that_takes_no_files_is_found_before_rendering(cornell_path, tm
         (["render", "s.xml", "--exposure", "inf"], ["--exposure"]),
         (["render", "s.xml", "--define", "spp"], ["NAME=VALUE"]),
         (["render", "s.xml", "--sp", "3"], ["--sp"]),
+        (["info", "s.xml", "--limit", "texels=5"], ["texels", "image_texels"]),
+        (["info", "s.xml", "--limit", "image_texels"], ["NAME=VALUE"]),
+        (["info", "s.xml", "--limit", "image_texels=2T"], ["'image_texels=2T'", "NAME=VALUE"]),
+        (["info", "s.xml", "--limit", "image_texels=-1K"], ["image_texels", "above 0"]),
     ],
 )
 def test_command_lines_that_make_no_sense_exit_with_2(tmp_path, arguments, words):
@@ -377,7 +398,7 @@ def test_variants_of_a_model(tmp_path, cornell_path):
     }
     (tmp_path / "lamp.gltf").write_text(json.dumps(model))
     listed = run("info", "lamp.gltf", cwd=tmp_path, check=0)
-    assert "variants   off, on" in listed.stdout
+    assert "variants     off, on" in listed.stdout
     lit = json.loads(run("info", "lamp.gltf", "--variant", "on", "--json", cwd=tmp_path, check=0).stdout)
     assert lit["variants"] == ["off", "on"]
     assert "scene::no-light" not in [d["code"] for d in lit["diagnostics"]]
@@ -388,6 +409,15 @@ def test_variants_of_a_model(tmp_path, cornell_path):
     assert 'there are "off", "on"' in wrong.stderr
     wrong = run("info", str(cornell_path), "--variant", "on", cwd=tmp_path, check=1)
     assert "the scene has no variants" in wrong.stderr
+
+
+def test_limits_are_options(tmp_path):
+    (tmp_path / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\n" + "f 1 2 3\n" * 1025)
+    for command in (["render", *FAST], ["info"], ["convert", "out.xml"]):
+        name, *rest = command
+        limited = [name, "a.obj", *rest, "--limit", "file_bytes=1G", "--limit", "mesh_elements=1k"]
+        assert "--limit mesh_elements=N" in run(*limited, cwd=tmp_path, check=1).stderr
+        run(*limited[:-1], "mesh_elements=2K", cwd=tmp_path, check=0)
 
 
 def test_files_are_looked_for_in_search_paths(tmp_path):

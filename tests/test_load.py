@@ -169,3 +169,39 @@ def test_search_paths_are_folders(tmp_path, cornell_path):
         sr.load(cornell_path, search_paths=[tmp_path / "absent"])
     with pytest.raises(TypeError, match="list of folders"):
         sr.load(cornell_path, search_paths=str(tmp_path))
+
+
+def test_limits_are_raised_and_lowered(tmp_path, lit_square):
+    file = tmp_path / "a.obj"
+    file.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\n")
+    with pytest.raises(sr.SceneError, match=r"more than 3 elements .*mesh_elements=N or limits="):
+        sr.load(file, limits={"mesh_elements": 3})
+    with pytest.warns(sr.SceneWarning):
+        assert (
+            sr.load(file, limits={"mesh_elements": np.int64(4), "file_bytes": 1e10}).info()["triangles"] == 2
+        )
+    scene = lit_square | {"mesh": {"type": "obj", "filename": str(file)}}
+    with pytest.raises(sr.SceneError, match="it has 48 bytes; at most 47 are read"):
+        sr.load(scene, limits={"file_bytes": 47})
+    with pytest.raises(sr.SceneError, match="at most 47 are read"):
+        sr.convert(scene, tmp_path / "out.xml", limits={"file_bytes": 47})
+
+
+@pytest.mark.parametrize(
+    ("limits", "error", "words"),
+    [
+        ({"texels": 5}, ValueError, 'no limit "texels"; there are file_bytes, '),
+        ({"file_bytes": 0}, ValueError, "file_bytes is a whole number above 0, not 0"),
+        ({"file_bytes": -1}, ValueError, "not -1"),
+        ({"file_bytes": 1.5}, ValueError, "not 1.5"),
+        ({"file_bytes": float("nan")}, ValueError, "not nan"),
+        ({"file_bytes": float("inf")}, ValueError, "not inf"),
+        ({"file_bytes": 2**64}, ValueError, "a whole number"),
+        ({"mesh_elements": 2**32}, ValueError, "from 1 to 4294967295"),
+        ({"file_bytes": "8G"}, TypeError, "is a number, not '8G'"),
+        ({"file_bytes": True}, TypeError, "is a number, not True"),
+    ],
+)
+def test_limits_that_make_no_sense_are_named(cornell_path, limits, error, words):
+    with pytest.raises(error, match=words):
+        sr.load(cornell_path, limits=limits)

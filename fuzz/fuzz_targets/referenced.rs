@@ -1,7 +1,7 @@
 //! Files that scenes name, of the formats that are read here and not by a library: the first byte says which.
 #![no_main]
 
-const SCENES: [(&str, &str); 4] = [
+const SCENES: [(&str, &str); 5] = [
     ("it.serialized", r#"<shape type="serialized"><string name="filename" value="it.serialized"/></shape>"#),
     ("it.ies", r#"<emitter type="ies"><string name="filename" value="it.ies"/></emitter>"#),
     ("it.pfm", r#"<emitter type="envmap"><string name="filename" value="it.pfm"/></emitter>"#),
@@ -9,6 +9,7 @@ const SCENES: [(&str, &str); 4] = [
         "it.spd",
         r#"<shape type="sphere"><emitter type="area"><spectrum name="radiance" filename="it.spd"/></emitter></shape>"#,
     ),
+    ("it.txt", r#"<shape type="bsplinecurve"><string name="filename" value="it.txt"/></shape>"#),
 ];
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {

@@ -85,18 +85,26 @@ class Image:
     def mean_relative_error(self) -> float:
         """Mean standard error over mean, of luminance."""
 
+def check_limits(named: Sequence[tuple[str, int]]) -> None:
+    """Raises ValueError unless there are such limits and they can be set so."""
+
 def load_file(
     path: str,
     defines: Sequence[tuple[str, str]],
     search_paths: Sequence[str],
     environment: str | None,
     variant: str | None,
+    limits: Sequence[tuple[str, int]],
     threads: int,
 ) -> LoadJob:
     """Starts to load a file; ``threads`` of 0 are all."""
 
 def load_dict(
-    dict: Mapping[str, Any], search_paths: Sequence[str], environment: str | None, threads: int
+    dict: Mapping[str, Any],
+    search_paths: Sequence[str],
+    environment: str | None,
+    limits: Sequence[tuple[str, int]],
+    threads: int,
 ) -> LoadJob:
     """Starts to load a dictionary."""
 
@@ -105,6 +113,7 @@ def convert_file(
     defines: Sequence[tuple[str, str]],
     search_paths: Sequence[str],
     variant: str | None,
+    limits: Sequence[tuple[str, int]],
     out: str,
     own_plugins: bool,
     overwrite: bool,
@@ -115,6 +124,7 @@ def convert_file(
 def convert_dict(
     dict: Mapping[str, Any],
     search_paths: Sequence[str],
+    limits: Sequence[tuple[str, int]],
     out: str,
     own_plugins: bool,
     overwrite: bool,

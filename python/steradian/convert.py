@@ -11,6 +11,7 @@ from typing import Any
 
 from steradian import _internal, _jobs
 from steradian.diagnostics import Diagnostic, SceneError, SceneWarning
+from steradian.limits import checked_limits
 from steradian.scene import as_text, checked_folders, checked_threads
 
 
@@ -50,6 +51,7 @@ def convert(
     defines: Mapping[str, Any] | None = None,
     search_paths: Iterable[str | os.PathLike[str]] = (),
     variant: str | None = None,
+    limits: Mapping[str, float] | None = None,
     own_plugins: bool = False,
     overwrite: bool = False,
     threads: int | None = None,
@@ -78,6 +80,7 @@ def convert(
         defines: values for the file's ``$name``, over its own defaults.
         search_paths: folders for files that are neither beside the scene nor where it says.
         variant: which of the file's sets of materials is written, as in :func:`steradian.load`.
+        limits: how much is taken in, as for :func:`steradian.load`.
         own_plugins: may XML name what Steradian has and Mitsuba has not? Then Mitsuba does not read it;
             otherwise the nearest that Mitsuba has is written.
         overwrite: may files that are there be replaced? Those that the scene is read from never are.
@@ -97,6 +100,7 @@ def convert(
         defines=defines,
         search_paths=search_paths,
         variant=variant,
+        limits=limits,
         own_plugins=own_plugins,
         overwrite=overwrite,
         threads=threads,
@@ -115,6 +119,7 @@ def convert_with_diagnostics(
     defines: Mapping[str, Any] | None = None,
     search_paths: Iterable[str | os.PathLike[str]] = (),
     variant: str | None = None,
+    limits: Mapping[str, float] | None = None,
     own_plugins: bool = False,
     overwrite: bool = False,
     threads: int | None = None,
@@ -124,17 +129,20 @@ def convert_with_diagnostics(
     texts = {str(name): as_text(value) for name, value in (defines or {}).items()}
     threads = checked_threads(threads)
     folders = checked_folders(search_paths)
+    most = checked_limits(limits)
     path = os.fspath(out)
     if isinstance(source, Mapping):
         if texts:
             raise ValueError("a dictionary has no $names: put the values in, instead of giving defines")
         if variant is not None:
             raise ValueError("a dictionary has no variants")
-        job = _internal.convert_dict(dict(source), folders, path, own_plugins, overwrite, threads)
+        job = _internal.convert_dict(dict(source), folders, most, path, own_plugins, overwrite, threads)
     else:
         name = os.fspath(source)
         pairs = list(texts.items())
-        job = _internal.convert_file(name, pairs, folders, variant, path, own_plugins, overwrite, threads)
+        job = _internal.convert_file(
+            name, pairs, folders, variant, most, path, own_plugins, overwrite, threads
+        )
     _jobs.wait(job)
     files, found, report, seconds = job.result(color)
     diagnostics = tuple(Diagnostic(**fields) for fields in found)

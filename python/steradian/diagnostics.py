@@ -26,6 +26,9 @@ class Diagnostic:
     """A guess, such as ``did you mean "roughness"?``"""
     consequence: str | None
     """What happens instead."""
+    effect: str | None
+    """``"approximated"`` (something else, or nearly the same, is shown instead) or ``"ignored"`` (it is as if
+    the file did not ask for it); None for an error."""
     text: str
     """All of this on one line."""
 

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import os
 import warnings
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from steradian import _internal, _jobs
 from steradian.diagnostics import Diagnostic, SceneError, SceneWarning
+from steradian.limits import checked_limits
 
 
 @dataclass(frozen=True)
@@ -50,13 +52,19 @@ class Scene:
         return SceneSettings(**self._compiled.settings())
 
     def info(self) -> dict[str, Any]:
-        """Camera, film, counts, bounds and memory, as plain values that ``json`` can write."""
+        """Camera, film, counts, bounds, memory and what is not as asked, as plain values for ``json``."""
         return {
             "scene": self.name,
             "load_seconds": self.load_seconds,
             **self._compiled.info(),
+            "approximated": self._codes("approximated"),
+            "ignored": self._codes("ignored"),
             "diagnostics": [vars(d) for d in self.diagnostics],
         }
+
+    def _codes(self, effect: str) -> dict[str, int]:
+        """How often each code of diagnostics of an effect occurs, the most frequent first."""
+        return dict(Counter(d.code for d in self.diagnostics if d.effect == effect).most_common())
 
     def __repr__(self) -> str:
         return f"<steradian.Scene {self.name}: {self._compiled.info()['triangles']} triangles>"
@@ -78,6 +86,7 @@ def load(
     search_paths: Iterable[str | os.PathLike[str]] = (),
     environment: str | os.PathLike[str] | None = None,
     variant: str | None = None,
+    limits: Mapping[str, float] | None = None,
     threads: int | None = None,
 ) -> Scene:
     """Loads a scene.
@@ -98,6 +107,8 @@ def load(
             lit by both, which is said.
         variant: which of the file's sets of materials is shown (glTF's KHR_materials_variants), by its name;
             ``info()["variants"]`` has the names. Without it, the one that the file shows by itself.
+        limits: how much is taken in, such as ``{"image_texels": 2**30}``, over the defaults in
+            ``docs/import.md``. An error about a limit names it.
         threads: threads to decode and compile with; all available cores unless given.
 
     Warns:
@@ -105,6 +116,7 @@ def load(
 
     Raises:
         SceneError: if there is no scene; the message says why, with file, line and remedy.
+        ValueError: if there is no limit of a name, or it cannot be set so.
         NotADirectoryError: if one of ``search_paths`` is no folder.
         KeyboardInterrupt: on Ctrl-C, while loading.
     """
@@ -114,6 +126,7 @@ def load(
         search_paths=search_paths,
         environment=environment,
         variant=variant,
+        limits=limits,
         threads=threads,
     )
     if loaded.scene is None:
@@ -130,12 +143,14 @@ def load_with_diagnostics(
     search_paths: Iterable[str | os.PathLike[str]] = (),
     environment: str | os.PathLike[str] | None = None,
     variant: str | None = None,
+    limits: Mapping[str, float] | None = None,
     threads: int | None = None,
     color: bool = False,
 ) -> Loaded:
     """As :func:`load`, but what is wrong is returned; ``color`` adds ANSI escapes to the report."""
     texts = {str(name): as_text(value) for name, value in (defines or {}).items()}
     folders = checked_folders(search_paths)
+    most = checked_limits(limits)
     around = None if environment is None else os.fspath(environment)
     if isinstance(source, Mapping):
         name = "<dict>"
@@ -143,11 +158,11 @@ def load_with_diagnostics(
             raise ValueError("a dictionary has no $names: put the values in, instead of giving defines")
         if variant is not None:
             raise ValueError("a dictionary has no variants")
-        job = _internal.load_dict(dict(source), folders, around, checked_threads(threads))
+        job = _internal.load_dict(dict(source), folders, around, most, checked_threads(threads))
     else:
         name = os.fspath(source)
         pairs = list(texts.items())
-        job = _internal.load_file(name, pairs, folders, around, variant, checked_threads(threads))
+        job = _internal.load_file(name, pairs, folders, around, variant, most, checked_threads(threads))
     _jobs.wait(job)
     compiled, found, report, seconds = job.result(color)
     diagnostics = tuple(Diagnostic(**fields) for fields in found)

@@ -7,10 +7,8 @@ use rayon::prelude::*;
 use sr_scene::{CurveBasis, CurveUv, CurvesDesc};
 
 use crate::files;
+use crate::limits::{Limit, Limits};
 use crate::values::shown;
-
-/// More control points than this are refused.
-const MAX_POINTS: usize = 1 << 28;
 
 /// About so many bytes are read at a time, side by side.
 const BLOCK: usize = 1 << 20;
@@ -19,9 +17,9 @@ const BLOCK: usize = 1 << 20;
 pub type Read = (CurvesDesc, Option<String>);
 
 /// Reads a file and places its points. Radii stay as they are, as in Mitsuba. The error is half a sentence.
-pub fn load(path: &Path, basis: CurveBasis, to_world: &DMat4) -> Result<Read, String> {
-    let bytes = files::unpacked(files::read(path, files::MAX_FILE_BYTES)?, files::MAX_UNPACKED_BYTES)?;
-    let (mut curves, note) = parse(&bytes, basis)?;
+pub fn load(path: &Path, basis: CurveBasis, to_world: &DMat4, limits: &Limits) -> Result<Read, String> {
+    let bytes = files::unpacked(files::read(path, limits.file_bytes)?, limits.unpacked_bytes)?;
+    let (mut curves, note) = parse(&bytes, basis, limits.mesh_elements)?;
     curves.name = path.display().to_string();
     curves.points.par_iter_mut().for_each(|p| {
         let [x, y, z, radius] = p.to_array();
@@ -44,7 +42,7 @@ struct Block {
     long: Option<usize>,
 }
 
-fn parse(bytes: &[u8], basis: CurveBasis) -> Result<Read, String> {
+fn parse(bytes: &[u8], basis: CurveBasis, limit: Limit) -> Result<Read, String> {
     let blocks: Vec<Result<Block, (usize, String)>> = blocks(bytes).into_par_iter().map(block).collect();
     let name = String::new();
     let mut curves =
@@ -53,8 +51,8 @@ fn parse(bytes: &[u8], basis: CurveBasis) -> Result<Read, String> {
     for block in blocks {
         let block = block.map_err(|(line, reason)| format!("line {}: {reason}", lines + line))?;
         let first = curves.points.len();
-        if first + block.points.len() > MAX_POINTS {
-            return Err(format!("more than {MAX_POINTS} control points"));
+        if first + block.points.len() > limit.len() {
+            return Err(limit.refusal(format!("more than {limit} control points")));
         }
         curves.firsts.extend(block.breaks.iter().map(|at| (first + at) as u32));
         curves.points.extend_from_slice(&block.points);
@@ -127,6 +125,10 @@ fn number(word: Option<&[u8]>) -> Result<f32, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn parse(bytes: &[u8], basis: CurveBasis) -> Result<Read, String> {
+        super::parse(bytes, basis, Limit::fixed(1 << 20))
+    }
 
     #[test]
     fn blank_lines_are_between_curves() {

@@ -6,26 +6,21 @@ use std::path::{Path, PathBuf};
 
 use sr_scene::{Diagnostic, Span};
 
-/// Larger files are refused.
-pub const MAX_FILE_BYTES: u64 = 4 << 30;
-/// More than this is not unpacked from a packed file.
-pub const MAX_UNPACKED_BYTES: u64 = 1 << 30;
-/// Larger scene files are refused.
-pub const MAX_SCENE_BYTES: u64 = 256 << 20;
+use crate::limits::Limit;
 
 /// The whole content of a regular file of at most `limit` bytes; the error is half a sentence.
-pub fn read(path: &Path, limit: u64) -> Result<Vec<u8>, String> {
+pub fn read(path: &Path, limit: Limit) -> Result<Vec<u8>, String> {
     let (file, length) = regular(path, limit)?;
     let mut bytes = Vec::with_capacity(length as usize);
-    file.take(limit + 1).read_to_end(&mut bytes).map_err(|e| reason(&e))?;
-    if bytes.len() as u64 > limit {
-        return Err(format!("it grew beyond {limit} bytes while being read"));
+    file.take(limit.most.saturating_add(1)).read_to_end(&mut bytes).map_err(|e| reason(&e))?;
+    if bytes.len() as u64 > limit.most {
+        return Err(limit.refusal(format!("it grew beyond {limit} bytes while being read")));
     }
     Ok(bytes)
 }
 
 /// A regular file of at most `limit` bytes, and how many it has.
-fn regular(path: &Path, limit: u64) -> Result<(File, u64), String> {
+fn regular(path: &Path, limit: Limit) -> Result<(File, u64), String> {
     // Looked at before it is opened: opening a FIFO would wait for a writer.
     let metadata = std::fs::metadata(path).map_err(|e| reason(&e))?;
     if metadata.is_dir() {
@@ -34,8 +29,9 @@ fn regular(path: &Path, limit: u64) -> Result<(File, u64), String> {
     if !metadata.is_file() {
         return Err("it is not a regular file".into());
     }
-    if metadata.len() > limit {
-        return Err(format!("it has {} bytes; at most {limit} are read", metadata.len()));
+    if metadata.len() > limit.most {
+        let length = metadata.len();
+        return Err(limit.refusal(format!("it has {length} bytes; at most {limit} are read")));
     }
     let file = File::open(path).map_err(|e| reason(&e))?;
     Ok((file, metadata.len()))
@@ -49,13 +45,14 @@ pub struct Content {
     pub length: u64,
 }
 
-/// Opens a regular file that is not read at once. What gzip has packed is unpacked in memory, at most `limit` bytes.
-pub fn open(path: &Path, limit: u64) -> Result<Content, String> {
-    let (mut file, length) = regular(path, MAX_FILE_BYTES)?;
+/// Opens a regular file that is not read at once, of at most `limit` bytes. What gzip has packed is unpacked in memory, to at most
+/// `unpacked_limit` bytes.
+pub fn open(path: &Path, limit: Limit, unpacked_limit: Limit) -> Result<Content, String> {
+    let (mut file, length) = regular(path, limit)?;
     let mut start = Vec::new();
     file.by_ref().take(GZIP.len() as u64).read_to_end(&mut start).map_err(|e| reason(&e))?;
     if start == GZIP {
-        let bytes = unpacked(read(path, MAX_FILE_BYTES)?, limit)?;
+        let bytes = unpacked(read(path, limit)?, unpacked_limit)?;
         return Ok(Content { length: bytes.len() as u64, reader: Box::new(Cursor::new(bytes)) });
     }
     Ok(Content { reader: Box::new(Cursor::new(start).chain(file).take(length)), length })
@@ -65,23 +62,24 @@ pub fn open(path: &Path, limit: u64) -> Result<Content, String> {
 const GZIP: [u8; 2] = [0x1f, 0x8b];
 
 /// The text of a scene file.
-pub fn read_text(path: &Path) -> Result<String, String> {
-    let bytes = read(path, MAX_SCENE_BYTES)?;
+pub fn read_text(path: &Path, limit: Limit) -> Result<String, String> {
+    let bytes = read(path, limit)?;
     let text = String::from_utf8(bytes)
         .map_err(|e| format!("byte {} is not UTF-8 text", e.utf8_error().valid_up_to()))?;
     Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
 }
 
 /// What gzip has packed into `bytes`, or `bytes` themselves if it has not packed them; the error is half a sentence.
-pub fn unpacked(bytes: Vec<u8>, limit: u64) -> Result<Vec<u8>, String> {
+pub fn unpacked(bytes: Vec<u8>, limit: Limit) -> Result<Vec<u8>, String> {
     if !bytes.starts_with(&GZIP) {
         return Ok(bytes);
     }
     let mut out = Vec::new();
     let reader = flate2::read::MultiGzDecoder::new(&bytes[..]);
-    reader.take(limit + 1).read_to_end(&mut out).map_err(|e| format!("it cannot be unpacked: {e}"))?;
-    if out.len() as u64 > limit {
-        return Err(format!("unpacked it has more than {limit} bytes"));
+    let mut reader = reader.take(limit.most.saturating_add(1));
+    reader.read_to_end(&mut out).map_err(|e| format!("it cannot be unpacked: {e}"))?;
+    if out.len() as u64 > limit.most {
+        return Err(limit.refusal(format!("unpacked it has more than {limit} bytes")));
     }
     Ok(out)
 }

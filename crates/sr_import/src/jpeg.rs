@@ -10,6 +10,7 @@ use image::{DynamicImage, GrayImage, RgbImage};
 use libjpeg_turbo_rs::{DecodeLimits, Decoder, FrameHeader, JpegError, PixelFormat};
 
 use crate::images::damaged;
+use crate::limits::Limit;
 
 /// More scans are refused: a few bytes can ask for one more pass over all pixels. Real files have some ten.
 const MAX_SCANS: usize = 100;
@@ -21,18 +22,18 @@ pub fn is_jpeg(bytes: &[u8]) -> bool {
     bytes.starts_with(&[0xff, 0xd8, 0xff])
 }
 
-/// Decodes a file of at most `max_texels` pixels; the error is half a sentence. A file that was cut is an error.
-pub fn decode(bytes: &[u8], max_texels: u64) -> Result<DynamicImage, String> {
+/// Decodes a file of at most `limit` pixels; the error is half a sentence. A file that was cut is an error.
+pub fn decode(bytes: &[u8], limit: Limit) -> Result<DynamicImage, String> {
     let limits = DecodeLimits {
-        max_pixels: max_texels,
+        max_pixels: limit.most,
         max_scans: MAX_SCANS,
-        max_memory: Some(max_texels * MAX_BYTES_PER_TEXEL),
+        max_memory: Some(limit.most.saturating_mul(MAX_BYTES_PER_TEXEL)),
         ..DecodeLimits::default()
     };
-    let mut decoder = Decoder::new_with_limits(bytes, limits).map_err(not_decoded)?;
+    let mut decoder = Decoder::new_with_limits(bytes, limits).map_err(|e| not_decoded(e, limit))?;
     let format = output_format(decoder.header())?;
     decoder.set_output_format(format);
-    let image = decoder.decode_image().map_err(not_decoded)?;
+    let image = decoder.decode_image().map_err(|e| not_decoded(e, limit))?;
     let (width, height) = (image.width as u32, image.height as u32);
     let pixels = match format {
         PixelFormat::Grayscale => GrayImage::from_raw(width, height, image.data).map(DynamicImage::from),
@@ -41,11 +42,10 @@ pub fn decode(bytes: &[u8], max_texels: u64) -> Result<DynamicImage, String> {
     pixels.ok_or_else(|| "it has fewer pixels than its header says".into())
 }
 
-fn not_decoded(error: JpegError) -> String {
+fn not_decoded(error: JpegError, limit: Limit) -> String {
     match error {
-        JpegError::Unsupported(_) | JpegError::LimitExceeded { .. } | JpegError::AllocationFailed { .. } => {
-            error.to_string()
-        }
+        JpegError::LimitExceeded { .. } => limit.refusal(error),
+        JpegError::Unsupported(_) | JpegError::AllocationFailed { .. } => error.to_string(),
         _ => damaged(&error.to_string()),
     }
 }
@@ -75,6 +75,7 @@ mod tests {
     use std::path::Path;
 
     use super::decode;
+    use crate::limits::Limit;
 
     /// Pictures, each with what libjpeg-turbo 3.2.0 decoded (by way of Pillow 13.0.0) in a PNG beside it.
     const PICTURES: [&str; 8] = ["420", "422", "444", "gray", "progressive", "restarts", "rgb", "cmyk"];
@@ -86,7 +87,7 @@ mod tests {
     #[test]
     fn pixels_are_those_of_libjpeg() {
         for name in PICTURES {
-            let ours = decode(&read(&format!("{name}.jpg")), 1 << 20).unwrap();
+            let ours = decode(&read(&format!("{name}.jpg")), Limit::fixed(1 << 20)).unwrap();
             let theirs = image::load_from_memory(&read(&format!("{name}.png"))).unwrap();
             assert_eq!(ours.color(), theirs.color(), "{name}");
             let differences: Vec<i32> = std::iter::zip(ours.as_bytes(), theirs.as_bytes())
@@ -102,10 +103,10 @@ mod tests {
     #[test]
     fn harmful_files_are_refused() {
         let good = read("420.jpg");
-        assert!(decode(&good, 61 * 43).is_ok());
-        assert!(decode(&good, 61 * 43 - 1).is_err(), "larger than allowed");
+        assert!(decode(&good, Limit::fixed(61 * 43)).is_ok());
+        assert!(decode(&good, Limit::fixed(61 * 43 - 1)).is_err(), "larger than allowed");
         for end in 0..good.len() - 2 {
-            assert!(decode(&good[..end], 1 << 20).is_err(), "cut after {end} bytes");
+            assert!(decode(&good[..end], Limit::fixed(1 << 20)).is_err(), "cut after {end} bytes");
         }
         for name in PICTURES {
             let good = read(&format!("{name}.jpg"));
@@ -114,7 +115,7 @@ mod tests {
                     let mut bad = good.clone();
                     bad[at] = value;
                     // Whatever comes, it must not panic.
-                    decode(&bad, 1 << 16).ok();
+                    decode(&bad, Limit::fixed(1 << 16)).ok();
                 }
             }
         }

@@ -20,6 +20,7 @@ mod gltf;
 mod ies;
 mod images;
 mod jpeg;
+mod limits;
 mod look_at;
 mod mesh;
 mod mesh_file;
@@ -34,6 +35,7 @@ use std::path::{Path, PathBuf};
 
 use sr_scene::{Diagnostic, Diagnostics, SceneDesc, Span};
 
+pub use limits::{Limit, Limits};
 pub use mitsuba::Origin;
 pub use mitsuba::node::{Child, Node, OtherName, Property, Reference, SpectrumValue, Value};
 pub use mitsuba::plugins;
@@ -51,6 +53,8 @@ pub struct LoadOptions {
     pub environment: Option<PathBuf>,
     /// Which of the file's variants of materials is shown; that which the file shows by itself, if none is named.
     pub variant: Option<String>,
+    /// How much is taken in.
+    pub limits: Limits,
 }
 
 /// Loads a scene file.
@@ -63,14 +67,14 @@ pub fn load(path: &Path, options: &LoadOptions) -> (Option<SceneDesc>, Diagnosti
     }
     let directory = path.parent().unwrap_or(Path::new("")).to_owned();
     let directories = files::Directories::new(directory, &options.search_paths);
-    let environment = options.environment.clone();
+    let limits = &options.limits;
     let loaded = match format::Format::of_name(&name) {
-        format::Format::Pbrt => pbrt::Text::read(path)
-            .map(|text| pbrt::load(&name, text, directories.into_list(), environment, &mut diagnostics)),
-        format::Format::Mitsuba => files::read_text(path).map(|text| {
+        format::Format::Pbrt => pbrt::Text::read(path, limits.scene_bytes)
+            .map(|text| pbrt::load(&name, text, directories.into_list(), options, &mut diagnostics)),
+        format::Format::Mitsuba => files::read_text(path, limits.scene_bytes).map(|text| {
             load_content(&name, text.into_bytes().into(), directories, options, &mut diagnostics)
         }),
-        format::Format::Gltf => files::read(path, files::MAX_FILE_BYTES)
+        format::Format::Gltf => files::read(path, limits.file_bytes)
             .map(|bytes| gltf::load(&name, bytes, directories.into_list(), options, &mut diagnostics)),
     };
     match loaded {
@@ -129,7 +133,6 @@ fn load_content(
     options: &LoadOptions,
     diagnostics: &mut Diagnostics,
 ) -> Option<SceneDesc> {
-    let environment = options.environment.clone();
     if format::Format::of_name(name) == format::Format::Gltf {
         return gltf::load(name, content.into_owned(), directories.into_list(), options, diagnostics);
     }
@@ -144,7 +147,7 @@ fn load_content(
         format::Format::Mitsuba => mitsuba::load(name, &text, directories, options, diagnostics),
         format::Format::Pbrt => {
             let text = pbrt::Text::of(text.into_owned());
-            pbrt::load(name, text, directories.into_list(), environment, diagnostics)
+            pbrt::load(name, text, directories.into_list(), options, diagnostics)
         }
         format::Format::Gltf => {
             let bytes = text.into_owned().into_bytes();

@@ -4,13 +4,15 @@
 
 use sr_scene::Pixels;
 
+use crate::limits::Limit;
+
 /// Does a file begin like a portable float map?
 pub fn is_pfm(bytes: &[u8]) -> bool {
     matches!(bytes, [b'P', b'F' | b'f', b'\n' | b' ' | b'\r', ..])
 }
 
-/// Reads a file of at most `max_texels`; the error is half a sentence.
-pub fn decode(bytes: &[u8], max_texels: u64) -> Result<(u32, u32, Pixels), String> {
+/// Reads a file of at most `limit` texels; the error is half a sentence.
+pub fn decode(bytes: &[u8], limit: Limit) -> Result<(u32, u32, Pixels), String> {
     let channels: u8 = if bytes[1] == b'F' { 3 } else { 1 };
     let mut rest = &bytes[2..];
     let [width, height, scale] = [word(&mut rest), word(&mut rest), word(&mut rest)];
@@ -22,8 +24,8 @@ pub fn decode(bytes: &[u8], max_texels: u64) -> Result<(u32, u32, Pixels), Strin
     let scale = scale.and_then(|t| t.parse::<f32>().ok()).filter(|s| s.is_finite() && *s != 0.0);
     let is_little = scale.ok_or("its header has no scale")? < 0.0;
     let texels = u64::from(width) * u64::from(height);
-    if texels > max_texels {
-        return Err(format!("it has {width} × {height} pixels; at most {max_texels} are read"));
+    if texels > limit.most {
+        return Err(limit.refusal(format!("it has {width} × {height} pixels; at most {limit} are read")));
     }
     let row = width as usize * usize::from(channels);
     let values = rest.get(1..).unwrap_or_default();
@@ -65,23 +67,26 @@ mod tests {
         let little = file("Pf", "-1.0", &values.map(f32::to_le_bytes));
         let big = file("Pf", "1.0", &values.map(f32::to_be_bytes));
         assert!(is_pfm(&little));
-        assert_eq!(decode(&little, 4).unwrap(), (2, 2, expected.clone()));
-        assert_eq!(decode(&big, 4).unwrap(), (2, 2, expected));
+        assert_eq!(decode(&little, Limit::fixed(4)).unwrap(), (2, 2, expected.clone()));
+        assert_eq!(decode(&big, Limit::fixed(4)).unwrap(), (2, 2, expected));
         let color = file("PF", "-1", &[1.0f32; 12].map(f32::to_le_bytes));
-        assert_eq!(decode(&color, 4).unwrap().2, Pixels::F32 { channels: 3, data: vec![1.0; 12] });
+        assert_eq!(
+            decode(&color, Limit::fixed(4)).unwrap().2,
+            Pixels::F32 { channels: 3, data: vec![1.0; 12] }
+        );
     }
 
     #[test]
     fn every_truncation_and_false_size_is_an_error() {
         let whole = file("Pf", "-1.0", &[1.0f32; 4].map(f32::to_le_bytes));
         for cut in 3..whole.len() {
-            assert!(decode(&whole[..cut], 4).is_err(), "cut at {cut}");
+            assert!(decode(&whole[..cut], Limit::fixed(4)).is_err(), "cut at {cut}");
         }
-        assert!(decode(&whole, 3).unwrap_err().contains("at most 3"));
+        assert!(decode(&whole, Limit::fixed(3)).unwrap_err().contains("at most 3"));
         for header in
             ["PF\n0 2\n-1\n", "PF\n-1 2\n-1\n", "PF\n9 9999999999\n-1\n", "PF\n2 2\n0\n", "PF\n2 2\nnan\n"]
         {
-            assert!(decode(header.as_bytes(), 1 << 20).is_err(), "{header}");
+            assert!(decode(header.as_bytes(), Limit::fixed(1 << 20)).is_err(), "{header}");
         }
     }
 }

@@ -62,13 +62,26 @@ fn ply() {
 
 #[test]
 fn obj() {
-    answer("obj", |_| "mesh.obj");
+    // As `fuzz_targets/obj.rs` has it: materials follow the first zero byte.
+    answer_written("obj", |bytes, folder| {
+        let mut parts = bytes.splitn(2, |&byte| byte == 0);
+        let [mesh, materials] = [(); 2].map(|()| parts.next().unwrap_or_default());
+        std::fs::write(folder.join("a.mtl"), materials).unwrap();
+        let path = folder.join("mesh.obj");
+        std::fs::write(&path, mesh).unwrap();
+        path
+    });
+}
+
+#[test]
+fn stl() {
+    answer("stl", |_| "mesh.stl");
 }
 
 /// Files that scenes name, as `fuzz_targets/referenced.rs` has them.
 #[test]
 fn referenced() {
-    const SCENES: [(&str, &str); 4] = [
+    const SCENES: [(&str, &str); 5] = [
         (
             "it.serialized",
             r#"<shape type="serialized"><string name="filename" value="it.serialized"/></shape>"#,
@@ -79,6 +92,7 @@ fn referenced() {
             "it.spd",
             r#"<shape type="sphere"><emitter type="area"><spectrum name="radiance" filename="it.spd"/></emitter></shape>"#,
         ),
+        ("it.txt", r#"<shape type="bsplinecurve"><string name="filename" value="it.txt"/></shape>"#),
     ];
     answer_written("referenced", |bytes, folder| {
         let (which, bytes) = bytes.split_first().unwrap_or((&0, &[]));

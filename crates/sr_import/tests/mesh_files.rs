@@ -114,6 +114,64 @@ fn a_ply_shows_its_colors() {
     assert!(matches!(scene.textures[..], [TextureDesc::MeshColor { .. }]));
 }
 
+/// As MeshLab writes them.
+#[test]
+fn a_ply_shows_the_texture_that_it_names() {
+    let (scene, diagnostics) = read("textured.ply");
+    let said: Vec<_> = diagnostics.list.iter().filter(|d| d.code == "ply::texture").collect();
+    assert_eq!(said.len(), 2, "{}", diagnostics.render(false));
+    assert!(said[0].message.ends_with("it names 2 textures, the second is second.png"));
+    assert_eq!(said[1].consequence.as_deref(), Some("its colors are not shown: the texture is"));
+    let scene = scene.unwrap();
+    let MaterialDesc::Diffuse { reflectance: ColorInput::Texture(id) } =
+        front(&scene, scene.shapes[0].material)
+    else {
+        panic!("no texture")
+    };
+    let TextureDesc::Bitmap { image, wrap: Wrap::Repeat, srgb: true, to_uv, .. } =
+        &scene.textures[id.0 as usize]
+    else {
+        panic!("no image")
+    };
+    assert!(scene.images[*image as usize].name.ends_with("mask image.pgm"));
+    assert_eq!(to_uv.transform_point2(Vec2::ZERO), Vec2::Y, "v is upwards");
+}
+
+#[test]
+fn a_ply_without_what_its_texture_needs_says_so() {
+    let text = std::fs::read_to_string(data("textured.ply")).unwrap();
+    let path = std::env::temp_dir().join(format!("sr_import-texture-{}.ply", std::process::id()));
+    for (from, to, consequence) in [
+        (
+            "property float s\nproperty float t",
+            "property float a\nproperty float b",
+            "the texture is not shown",
+        ),
+        ("mask image.pgm", "none.pgm", "it is shown without its texture"),
+    ] {
+        std::fs::write(&path, text.replace(from, to)).unwrap();
+        let (scene, diagnostics) = load(&path, &LoadOptions::default());
+        let said: Vec<_> = diagnostics.list.iter().filter(|d| d.code == "ply::texture").collect();
+        assert_eq!(said.len(), 1, "{}", diagnostics.render(false));
+        assert_eq!(said[0].consequence.as_deref(), Some(consequence));
+        assert!(matches!(scene.unwrap().textures[..], [TextureDesc::MeshColor { .. }]));
+    }
+    std::fs::remove_file(path).unwrap();
+}
+
+#[test]
+fn too_many_files_of_materials_are_said() {
+    let path = std::env::temp_dir().join(format!("sr_import-libraries-{}.obj", std::process::id()));
+    let names: String = (0..258).map(|i| format!("mtllib {i}.mtl\n")).collect();
+    std::fs::write(&path, names + "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let (scene, diagnostics) = load(&path, &LoadOptions::default());
+    std::fs::remove_file(path).unwrap();
+    assert!(scene.is_some());
+    let said: Vec<_> = diagnostics.list.iter().filter(|d| d.code == "obj::no-library").collect();
+    assert_eq!(said.len(), 257);
+    assert_eq!(said[256].message, "more than 256 files of materials are named, \"256.mtl\" after these");
+}
+
 #[test]
 fn an_stl_stands_upright_with_sharp_edges() {
     let (scene, diagnostics) = read("box.stl");

@@ -11,6 +11,7 @@ use sr_import::{LoadOptions, Origin};
 use sr_scene::{Diagnostics, SceneDesc};
 
 use crate::job::Job;
+use crate::limits::{self, Named};
 use crate::load::{Fields, fields};
 use crate::{node, output};
 
@@ -59,6 +60,7 @@ pub fn convert_file(
     defines: Vec<(String, String)>,
     search_paths: Vec<PathBuf>,
     variant: Option<String>,
+    limits: Named,
     out: PathBuf,
     own_plugins: bool,
     overwrite: bool,
@@ -66,9 +68,10 @@ pub fn convert_file(
 ) -> PyResult<ConvertJob> {
     target_of(&out)?;
     let request = Request { out, own_plugins, overwrite };
+    let options =
+        LoadOptions { defines, search_paths, environment: None, variant, limits: limits::limits(limits)? };
     let job = Job::start(threads, move || {
         let start = Instant::now();
-        let options = LoadOptions { defines, search_paths, environment: None, variant };
         let (scene, diagnostics) = sr_import::load(&path, &options);
         written(scene, diagnostics, &request, start)
     })?;
@@ -80,6 +83,7 @@ pub fn convert_file(
 pub fn convert_dict(
     dict: &Bound<'_, PyDict>,
     search_paths: Vec<PathBuf>,
+    limits: Named,
     out: PathBuf,
     own_plugins: bool,
     overwrite: bool,
@@ -89,7 +93,7 @@ pub fn convert_dict(
     let start = Instant::now();
     let (node, mut diagnostics) = node::from_dict(dict)?;
     let directories = std::iter::once(PathBuf::new()).chain(search_paths).collect();
-    let origin = Origin { legacy: false, directories, environment: None };
+    let origin = Origin { legacy: false, directories, environment: None, limits: limits::limits(limits)? };
     let request = Request { out, own_plugins, overwrite };
     let job = Job::start(threads, move || {
         let scene = match diagnostics.has_errors() {

@@ -7,6 +7,7 @@ mod convert;
 mod image;
 mod integrate;
 mod job;
+mod limits;
 mod load;
 mod names;
 mod node;
@@ -27,6 +28,7 @@ fn _internal(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<render::RenderJob>()?;
     module.add_class::<image::Film>()?;
     module.add_class::<image::Image>()?;
+    module.add_function(wrap_pyfunction!(limits::check_limits, module)?)?;
     module.add_function(wrap_pyfunction!(load::load_file, module)?)?;
     module.add_function(wrap_pyfunction!(load::load_dict, module)?)?;
     module.add_function(wrap_pyfunction!(convert::convert_file, module)?)?;

@@ -7,9 +7,10 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use sr_import::{LoadOptions, Origin};
 use sr_render::CompileError;
-use sr_scene::{Diagnostic, Diagnostics, SceneDesc, Span};
+use sr_scene::{Diagnostic, Diagnostics, Effect, SceneDesc, Span};
 
 use crate::job::Job;
+use crate::limits::{self, Named};
 use crate::node;
 use crate::scene::Scene;
 
@@ -54,11 +55,13 @@ pub fn load_file(
     search_paths: Vec<PathBuf>,
     environment: Option<PathBuf>,
     variant: Option<String>,
+    limits: Named,
     threads: usize,
 ) -> PyResult<LoadJob> {
+    let options =
+        LoadOptions { defines, search_paths, environment, variant, limits: limits::limits(limits)? };
     let job = Job::start(threads, move || {
         let start = Instant::now();
-        let options = LoadOptions { defines, search_paths, environment, variant };
         let (desc, diagnostics) = sr_import::load(&path, &options);
         Ok(compiled(desc, diagnostics, start))
     })?;
@@ -71,12 +74,13 @@ pub fn load_dict(
     dict: &Bound<'_, PyDict>,
     search_paths: Vec<PathBuf>,
     environment: Option<PathBuf>,
+    limits: Named,
     threads: usize,
 ) -> PyResult<LoadJob> {
     let start = Instant::now();
     let (node, mut diagnostics) = node::from_dict(dict)?;
     let directories = std::iter::once(PathBuf::new()).chain(search_paths).collect();
-    let origin = Origin { legacy: false, directories, environment };
+    let origin = Origin { legacy: false, directories, environment, limits: limits::limits(limits)? };
     let job = Job::start(threads, move || {
         let desc = match diagnostics.has_errors() {
             true => None,
@@ -117,6 +121,11 @@ pub fn fields<'py>(py: Python<'py>, diagnostic: &Diagnostic, all: &Diagnostics) 
     dict.set_item("column", column)?;
     dict.set_item("hint", hint)?;
     dict.set_item("consequence", consequence)?;
+    let effect = diagnostic.effect().map(|effect| match effect {
+        Effect::Approximated => "approximated",
+        Effect::Ignored => "ignored",
+    });
+    dict.set_item("effect", effect)?;
     dict.set_item("text", all.one_line(diagnostic))?;
     Ok(dict)
 }

@@ -27,6 +27,15 @@ pub enum Severity {
     Error,
 }
 
+/// What becomes of what a warning is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Effect {
+    /// Something else, or nearly the same, is shown instead.
+    Approximated,
+    /// It is as if the file did not ask for it.
+    Ignored,
+}
+
 /// One thing to tell the user.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnostic {
@@ -40,9 +49,37 @@ pub struct Diagnostic {
     pub span: Span,
     /// A guess, shown at the place: `did you mean "roughness"?`
     pub hint: Option<String>,
-    /// What happens instead.
+    /// What happens instead. Its words tell the [`Effect`].
     pub consequence: Option<String>,
 }
+
+/// In the consequence of a warning that something is ignored.
+const IGNORED: &[&str] = &[
+    "ignored",
+    "left out",
+    "without",
+    "not used",
+    "not read",
+    "not shown",
+    "not emit",
+    "not rendered",
+    "cannot be read",
+    "no effect",
+    "no file is looked for",
+    "no color of a vertex",
+    "no portal",
+    "is lost",
+    "lights nothing",
+    "nothing is shown",
+    "nothing is seen",
+    "nothing is blurred",
+    "shuts nothing out",
+    "as empty space",
+    "stay as they are",
+    "stays as it is",
+    "the rest stays",
+    "light is black",
+];
 
 impl Diagnostic {
     /// An error: there will be no scene.
@@ -53,6 +90,17 @@ impl Diagnostic {
     /// A warning: the scene is rendered, but not quite as asked.
     pub fn warning(code: &'static str, span: &Span, message: impl Into<String>) -> Self {
         Self::new(Severity::Warning, code, span, message.into())
+    }
+
+    /// What becomes of what a warning is about, by its consequence; `None` for an error.
+    pub fn effect(&self) -> Option<Effect> {
+        let consequence = self.consequence.as_deref().unwrap_or("");
+        let is_ignored = IGNORED.iter().any(|words| consequence.contains(words));
+        match self.severity {
+            Severity::Error => None,
+            Severity::Warning if is_ignored => Some(Effect::Ignored),
+            Severity::Warning => Some(Effect::Approximated),
+        }
     }
 
     fn new(severity: Severity, code: &'static str, span: &Span, message: String) -> Self {
@@ -183,6 +231,26 @@ impl fmt::Display for Severity {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn consequences_tell_approximations_from_what_is_ignored() {
+        let effect = |consequence: &str| {
+            Diagnostic::warning("a::b", &Span::default(), "c").consequence(consequence).effect()
+        };
+        for ignored in
+            ["it is ignored", "they are left out", "the rest stays", "it is rendered without its emitter"]
+        {
+            assert_eq!(effect(ignored), Some(Effect::Ignored), "{ignored}");
+        }
+        for shown in ["a diffuse one is used", "its mean is used", "1.5 is used", "it is lit by both, added"]
+        {
+            assert_eq!(effect(shown), Some(Effect::Approximated), "{shown}");
+        }
+        let said = |new: fn(&'static str, &Span, &'static str) -> Diagnostic| {
+            new("a::b", &Span::default(), "c").effect()
+        };
+        assert_eq!((said(Diagnostic::warning), said(Diagnostic::error)), (Some(Effect::Approximated), None));
+    }
 
     #[test]
     fn texts_can_be_given_later() {

@@ -22,7 +22,7 @@ mod validate;
 pub use camera::{CameraDesc, FovAxis, Lens, Projection};
 pub use curves::{CurveBasis, CurveUv, CurvesDesc};
 pub use desc::{MaterialId, SceneDesc, Settings, TextureId};
-pub use diagnostic::{Diagnostic, Diagnostics, Severity, SourceId, Sources, Span};
+pub use diagnostic::{Diagnostic, Diagnostics, Effect, Severity, SourceId, Sources, Span};
 pub use film::{Crop, FilmDesc, FilmWindow, FilterDesc};
 pub use image::{Image, Pixels};
 pub use light::{LightDesc, MAX_PORTALS, Portal, SphereMapping, SpotFalloff};

@@ -6,11 +6,14 @@ import argparse
 import math
 import os
 from collections.abc import Callable, Sequence
-from typing import NoReturn
+from typing import NoReturn, TypeVar
 
 from steradian import _internal
+from steradian.limits import parse_limit
 from steradian.render import MAX_SPP
 from steradian.strategy import strategy
+
+T = TypeVar("T")
 
 EXAMPLES = """\
 examples:
@@ -282,6 +285,15 @@ def _add_scene(parser: argparse.ArgumentParser) -> None:
         metavar="NAME",
         help="which of the scene's sets of materials is shown, where a glTF file has several",
     )
+    parser.add_argument(
+        "--limit",
+        metavar="NAME=VALUE",
+        action="append",
+        default=[],
+        type=lambda text: _checked(lambda: parse_limit(text)),
+        help="how much of a file is taken in, such as file_bytes=8G: docs/import.md lists the limits; "
+        "may be repeated",
+    )
     parser.add_argument("--strict", action="store_true", help="fail on warnings about the scene, too")
 
 
@@ -353,7 +365,7 @@ def _sampler(text: str) -> str:
     return _checked(lambda: _internal.normalize_sampler(text))
 
 
-def _checked(convert: Callable[[], str]) -> str:
+def _checked(convert: Callable[[], T]) -> T:
     try:
         return convert()
     except ValueError as error:

@@ -32,6 +32,7 @@ def convert(arguments: argparse.Namespace) -> int:
             defines=dict(arguments.define),
             search_paths=arguments.search_path,
             variant=arguments.variant,
+            limits=dict(arguments.limit),
             own_plugins=arguments.own_plugins,
             overwrite=arguments.force,
             threads=arguments.threads,

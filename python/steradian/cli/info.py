@@ -44,11 +44,19 @@ def describe(values: dict[str, Any]) -> str:
         ("bounds", "empty" if bounds is None else f"{_point(bounds[0])} to {_point(bounds[1])}"),
         ("memory", f"{values['memory_bytes'] / 2**20:.1f} MiB"),
         ("loaded in", f"{values['load_seconds']:.2f} s"),
-        ("warnings", str(len(values["diagnostics"]))),
+        ("approximated", _codes(values["approximated"])),
+        ("ignored", _codes(values["ignored"])),
     ]
     if values["variants"]:
         rows.insert(-3, ("variants", ", ".join(values["variants"])))
-    return "\n".join(f"{name:10} {text}" for name, text in rows)
+    return "\n".join(f"{name:12} {text}" for name, text in rows)
+
+
+def _codes(counts: dict[str, int]) -> str:
+    """How many, and what they are about; what is said of each is on standard error."""
+    if not counts:
+        return "nothing"
+    return f"{sum(counts.values())}: " + ", ".join(f"{count} x {code}" for code, count in counts.items())
 
 
 def _camera(camera: dict[str, Any]) -> str:

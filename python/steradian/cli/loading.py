@@ -16,6 +16,7 @@ def load(arguments: argparse.Namespace) -> Scene | None:
         arguments.scene,
         defines=dict(arguments.define),
         search_paths=arguments.search_path,
+        limits=dict(arguments.limit),
         environment=arguments.environment,
         variant=arguments.variant,
         threads=getattr(arguments, "threads", None),

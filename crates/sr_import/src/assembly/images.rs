@@ -18,12 +18,13 @@ pub(super) enum ImageSlot {
 
 impl Assembly<'_> {
     pub(super) fn load_images(&mut self) -> Vec<Arc<Image>> {
+        let limits = self.limits;
         let slots = std::mem::take(&mut self.images);
         let loaded: Vec<Result<Arc<Image>, String>> = slots
             .par_iter()
             .map(|slot| match slot {
                 ImageSlot::Ready(image) => check_image(image).map(|()| image.clone()),
-                ImageSlot::File { path, decode, .. } => images::load(path, *decode).map(Arc::new),
+                ImageSlot::File { path, decode, .. } => images::load(path, *decode, &limits).map(Arc::new),
             })
             .collect();
         let mut out = Vec::with_capacity(loaded.len());

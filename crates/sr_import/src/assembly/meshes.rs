@@ -9,6 +9,7 @@ use sr_scene::{Diagnostic, Geometry, MeshDesc, ShapeDesc, Span, TextureDesc};
 
 use super::Assembly;
 use crate::files;
+use crate::limits::{Limit, Limits};
 use crate::mesh::{self, Format, Placement, RawMesh, Report};
 
 /// A mesh of the scene, to be read and placed.
@@ -50,8 +51,8 @@ impl Assembly<'_> {
         let mut pending = std::mem::take(&mut self.meshes);
         let colors = self.textures.iter().any(|t| matches!(t, TextureDesc::MeshColor { .. }));
         pending.iter_mut().for_each(|mesh| mesh.placement.colors = colors);
-        let files = read_files(&pending);
-        let mut placed = place_all(&mut pending, files);
+        let files = read_files(&pending, &self.limits);
+        let mut placed = place_all(&mut pending, files, self.limits.subdivided_faces);
         let mut degenerate = Vec::new();
         let mut bad_normals = Vec::new();
         let mut empty = Vec::new();
@@ -150,7 +151,7 @@ impl Assembly<'_> {
 }
 
 /// Every distinct file, read.
-fn read_files(pending: &[PendingMesh]) -> HashMap<FileKey, Result<RawMesh, String>> {
+fn read_files(pending: &[PendingMesh], limits: &Limits) -> HashMap<FileKey, Result<RawMesh, String>> {
     let mut keys: Vec<FileKey> = Vec::new();
     let mut seen = std::collections::HashSet::new();
     for mesh in pending {
@@ -163,7 +164,7 @@ fn read_files(pending: &[PendingMesh]) -> HashMap<FileKey, Result<RawMesh, Strin
     }
     keys.into_par_iter()
         .map(|key| {
-            let mesh = mesh::load(&key.0, key.1, key.2);
+            let mesh = mesh::load(&key.0, key.1, key.2, limits);
             (key, mesh)
         })
         .collect()
@@ -173,7 +174,11 @@ type Placed = Result<(Arc<MeshDesc>, Report), String>;
 
 /// Every pending mesh in place; meshes that are placed alike share their memory. What was read is let go as soon as it is in
 /// place, or becomes that which is in place.
-fn place_all(pending: &mut [PendingMesh], files: HashMap<FileKey, Result<RawMesh, String>>) -> Vec<Placed> {
+fn place_all(
+    pending: &mut [PendingMesh],
+    files: HashMap<FileKey, Result<RawMesh, String>>,
+    faces_limit: Limit,
+) -> Vec<Placed> {
     let mut raw: Vec<Result<RawMesh, String>> = pending.iter_mut().map(|mesh| taken(mesh, &files)).collect();
     drop(files);
     // The first mesh that is the same, for each.
@@ -196,10 +201,11 @@ fn place_all(pending: &mut [PendingMesh], files: HashMap<FileKey, Result<RawMesh
         } else if let Ok(found) = &raw
             && let Some(how) = pending[i].placement.subdivision
         {
-            match how.faces(&found.mesh, &found.fans) {
-                Ok(more) if faces + more <= MAX_SUBDIVIDED => faces += more,
+            match how.faces(&found.mesh, &found.fans, faces_limit) {
+                Ok(more) if faces + more <= faces_limit.most => faces += more,
                 Ok(_) => {
-                    *raw = Err(format!("all meshes subdivided would have more than {MAX_SUBDIVIDED} faces"))
+                    let what = format!("all meshes subdivided would have more than {faces_limit} faces");
+                    *raw = Err(faces_limit.refusal(what));
                 }
                 Err(reason) => *raw = Err(reason),
             }
@@ -218,9 +224,6 @@ fn place_all(pending: &mut [PendingMesh], files: HashMap<FileKey, Result<RawMesh
         .collect()
 }
 
-/// Faces of all subdivided meshes together.
-const MAX_SUBDIVIDED: u64 = 1 << 20;
-
 /// What was read for a mesh; of what lay in memory, the name is left.
 fn taken(
     mesh: &mut PendingMesh,
@@ -229,7 +232,11 @@ fn taken(
     match &mut mesh.source {
         MeshSource::Memory(desc) => {
             let name = MeshDesc { name: desc.name.clone(), ..MeshDesc::default() };
-            Ok(RawMesh { mesh: std::mem::replace(desc, Arc::new(name)), fans: [].into() })
+            Ok(RawMesh {
+                mesh: std::mem::replace(desc, Arc::new(name)),
+                fans: [].into(),
+                textures: [].into(),
+            })
         }
         MeshSource::File { path, format, flip_v } => files
             .get(&(path.clone(), *format, *flip_v))

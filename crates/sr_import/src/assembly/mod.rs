@@ -23,6 +23,7 @@ use sr_scene::{
 
 use crate::files;
 use crate::images::Decode;
+use crate::limits::Limits;
 use crate::mesh::Placement;
 
 pub use camera::{FRONT_ABOVE, default_film};
@@ -52,6 +53,8 @@ pub struct Assembly<'d> {
     pub variants: Vec<String>,
     /// An image of latitude and longitude, +Y up, that the scene does not name and is lit by.
     pub environment: Option<PathBuf>,
+    /// How much is taken in.
+    pub limits: Limits,
     images: Vec<ImageSlot>,
     image_files: HashMap<(PathBuf, Decode), u32>,
     textures: Vec<TextureDesc>,
@@ -63,7 +66,7 @@ pub struct Assembly<'d> {
 
 impl<'d> Assembly<'d> {
     /// An empty scene; files are looked for in `directories`.
-    pub fn new(directories: Vec<PathBuf>, d: &'d mut Diagnostics) -> Self {
+    pub fn new(directories: Vec<PathBuf>, limits: Limits, d: &'d mut Diagnostics) -> Self {
         Self {
             d,
             directories,
@@ -75,6 +78,7 @@ impl<'d> Assembly<'d> {
             lights: Vec::new(),
             variants: Vec::new(),
             environment: None,
+            limits,
             images: Vec::new(),
             image_files: HashMap::new(),
             textures: Vec::new(),

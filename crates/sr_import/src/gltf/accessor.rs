@@ -125,8 +125,10 @@ impl Document<'_, '_> {
         let stored = stored.ok_or("its \"componentType\" is none of glTF's")?;
         let count = whole(accessor, "count").ok_or("it has no \"count\"")?;
         let total = count.checked_mul(width).filter(|&total| total <= self.budget);
-        let total =
-            total.ok_or_else(|| format!("with it the file has too many numbers ({count} × {width})"))?;
+        let total = total.ok_or_else(|| {
+            let what = format!("with it the file has too many numbers ({count} × {width})");
+            self.out.limits.gltf_numbers.refusal(what)
+        })?;
         let normalized = accessor.get("normalized").is_some_and(Value::is_true);
         let mut rows = match accessor.get("bufferView") {
             Some(view) => {

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::files;
+use crate::limits::Limit;
 
 /// A file taken apart.
 pub struct Container {
@@ -16,10 +17,10 @@ const JSON: u32 = 0x4e4f_534a;
 const BINARY: u32 = 0x004e_4942;
 
 /// Takes a file apart; the error is half a sentence.
-pub fn read(bytes: Vec<u8>) -> Result<Container, String> {
+pub fn read(bytes: Vec<u8>, limit: Limit) -> Result<Container, String> {
     let text = |bytes: &[u8]| {
-        if bytes.len() as u64 > files::MAX_SCENE_BYTES {
-            return Err(format!("its JSON has more than {} bytes", files::MAX_SCENE_BYTES));
+        if bytes.len() as u64 > limit.most {
+            return Err(limit.refusal(format!("its JSON has more than {limit} bytes")));
         }
         let text = std::str::from_utf8(bytes);
         let text = text.map_err(|e| format!("byte {} of its JSON is not UTF-8 text", e.valid_up_to()))?;
@@ -56,8 +57,8 @@ pub fn read(bytes: Vec<u8>) -> Result<Container, String> {
     if first { Err("it has no JSON".into()) } else { Ok(container) }
 }
 
-/// The bytes that a URI stands for: a data URI, or a file in one of the directories.
-pub fn fetch(uri: &str, find: impl Fn(&str) -> std::path::PathBuf) -> Result<Vec<u8>, String> {
+/// The bytes that a URI stands for: a data URI, or a file of at most `limit` bytes.
+pub fn fetch(uri: &str, find: impl Fn(&str) -> std::path::PathBuf, limit: Limit) -> Result<Vec<u8>, String> {
     if let Some(rest) = uri.strip_prefix("data:") {
         let (head, data) = rest.split_once(',').ok_or("its data URI has no comma")?;
         return if head.ends_with(";base64") { base64(data) } else { Ok(unescape(data)) };
@@ -68,7 +69,7 @@ pub fn fetch(uri: &str, find: impl Fn(&str) -> std::path::PathBuf) -> Result<Vec
     // Some exporters escape file names, some do not.
     let plain = find(uri);
     let path = if plain.exists() { plain } else { find(&String::from_utf8_lossy(&unescape(uri))) };
-    files::read(Path::new(&path), files::MAX_FILE_BYTES)
+    files::read(Path::new(&path), limit)
 }
 
 /// `%20` and the like to bytes.
@@ -122,7 +123,7 @@ mod tests {
 
     #[test]
     fn data_uris() {
-        let fetch = |uri| fetch(uri, |name| name.into());
+        let fetch = |uri| fetch(uri, |name| name.into(), Limit::fixed(100));
         assert_eq!(fetch("data:application/octet-stream;base64,AAEC/w==").unwrap(), [0, 1, 2, 255]);
         assert_eq!(fetch("data:text/plain,a%20b").unwrap(), b"a b");
         assert!(fetch("data:;base64,A*").unwrap_err().contains("character 1"));
@@ -131,6 +132,7 @@ mod tests {
 
     #[test]
     fn broken_binaries() {
+        let read = |bytes| read(bytes, Limit::fixed(100));
         let header = |length: u32| {
             let mut bytes = b"glTF".to_vec();
             [2, 20, length, JSON].iter().for_each(|w| bytes.extend(w.to_le_bytes()));

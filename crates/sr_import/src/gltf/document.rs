@@ -9,10 +9,6 @@ use super::json::Value;
 use super::{container, geometry, image, material};
 use crate::assembly::Assembly;
 
-/// More numbers than this are not read from buffers in all: accessors may share bytes, so that a small file can ask for
-/// any amount.
-const MAX_NUMBERS: usize = 1 << 28;
-
 /// A file, and the scene that it becomes.
 pub struct Document<'v, 'd> {
     pub root: &'v Value,
@@ -21,7 +17,8 @@ pub struct Document<'v, 'd> {
     buffers: HashMap<usize, Option<Rc<[u8]>>>,
     /// Buffer views whose bytes were packed.
     unpacked: HashMap<usize, Option<Rc<[u8]>>>,
-    /// How many numbers may still be read.
+    /// How many numbers may still be read from buffers: accessors may share bytes, so that a small file can ask for any
+    /// amount.
     pub budget: usize,
     pub images: image::Images,
     pub materials: HashMap<material::Key, material::Surface>,
@@ -36,14 +33,15 @@ pub struct Document<'v, 'd> {
 
 impl<'v, 'd> Document<'v, 'd> {
     pub fn new(root: &'v Value, binary: Option<Vec<u8>>, out: Assembly<'d>) -> Self {
+        let limits = out.limits;
         Self {
             root,
             out,
             binary: binary.map(Rc::from),
             buffers: HashMap::new(),
             unpacked: HashMap::new(),
-            budget: MAX_NUMBERS,
-            images: image::Images::default(),
+            budget: limits.gltf_numbers.len(),
+            images: image::Images::new(limits.gltf_texels),
             materials: HashMap::new(),
             meshes: HashMap::new(),
             variant: None,
@@ -118,7 +116,10 @@ impl<'v, 'd> Document<'v, 'd> {
             return done.clone();
         }
         let read = match (buffer.get("uri").and_then(Value::text), &self.binary) {
-            (Some(uri), _) => container::fetch(uri, |name| self.out.find(name)).map(Rc::from),
+            (Some(uri), _) => {
+                let limit = self.out.limits.file_bytes;
+                container::fetch(uri, |name| self.out.find(name), limit).map(Rc::from)
+            }
             (None, Some(binary)) if key == 0 => Ok(binary.clone()),
             (None, _) => Err("it names no file".into()),
         };

@@ -79,7 +79,7 @@ impl<'v> Document<'v, '_> {
             self.error("file::bad-image", &place.span, "with it the file's images are too large");
             return None;
         }
-        let image = match decode_bytes(Path::new(&name), &bytes, Decode::Raw) {
+        let image = match decode_bytes(Path::new(&name), &bytes, Decode::Raw, self.out.limits.image_texels) {
             Ok(image) => image,
             Err(reason) => {
                 self.bad_image(place, &name, &reason);

@@ -11,6 +11,7 @@ use super::container;
 use super::document::Document;
 use super::json::Value;
 use crate::images::{self, Decode, decode_bytes};
+use crate::limits::Limit;
 use crate::values::srgb_to_linear;
 
 /// What is read out of an image.
@@ -28,21 +29,14 @@ pub enum Part {
     Normal(u32),
 }
 
-/// More texels than this are not decoded, or made of what was, in all: a file may show one image in many ways.
-const MAX_TEXELS: u64 = 1 << 29;
-
 /// The images of a file by their index.
 pub struct Images {
     decoded: HashMap<usize, Arc<Image>>,
     parts: HashMap<(usize, Part), u32>,
-    /// How many texels may still be decoded or made.
+    /// How many texels may be decoded, and made of what was: a file may show one image in many ways.
+    limit: Limit,
+    /// How many still may.
     left: u64,
-}
-
-impl Default for Images {
-    fn default() -> Self {
-        Self { decoded: HashMap::new(), parts: HashMap::new(), left: MAX_TEXELS }
-    }
 }
 
 impl<'v> Document<'v, '_> {
@@ -62,17 +56,16 @@ impl<'v> Document<'v, '_> {
         encoded.retain(|(_, name, bytes, image)| {
             let fits = self.images.take(images::texels(Path::new(name), bytes));
             if !fits {
-                self.bad_image(
-                    image,
-                    name,
-                    &format!("with it the file's images have more than {MAX_TEXELS} pixels"),
-                );
+                let limit = self.images.limit;
+                let reason = format!("with it the file's images have more than {limit} pixels");
+                self.bad_image(image, name, &limit.refusal(reason));
             }
             fits
         });
+        let limit = self.out.limits.image_texels;
         let decoded: Vec<Result<Image, String>> = encoded
             .par_iter()
-            .map(|(_, name, bytes, _)| decode_bytes(Path::new(name), bytes, Decode::Raw))
+            .map(|(_, name, bytes, _)| decode_bytes(Path::new(name), bytes, Decode::Raw, limit))
             .collect();
         for ((index, name, _, image), result) in encoded.into_iter().zip(decoded) {
             match result {
@@ -94,7 +87,7 @@ impl<'v> Document<'v, '_> {
             name.to_owned()
         };
         let bytes = match (image.get("uri").and_then(Value::text), image.get("bufferView")) {
-            (Some(uri), _) => container::fetch(uri, |name| self.out.find(name)),
+            (Some(uri), _) => container::fetch(uri, |name| self.out.find(name), self.out.limits.file_bytes),
             (None, Some(view)) => Ok(self.view(view)?.bytes().to_vec()),
             (None, None) => Err("it names no file".into()),
         };
@@ -134,8 +127,9 @@ impl<'v> Document<'v, '_> {
             Arc::new(make(&image, part))
         } else {
             let span = self.root.get("images").map(|images| images.span.clone()).unwrap_or_default();
-            let message = format!("what is made of the file's images has more than {MAX_TEXELS} pixels");
-            self.error("file::bad-image", &span, message);
+            let limit = self.images.limit;
+            let message = format!("what is made of the file's images has more than {limit} pixels");
+            self.error("file::bad-image", &span, limit.refusal(message));
             return None;
         };
         let slot = self.out.image_in_memory(&made);
@@ -201,6 +195,11 @@ fn make(image: &Image, part: Part) -> Image {
 }
 
 impl Images {
+    /// None yet.
+    pub fn new(limit: Limit) -> Self {
+        Self { decoded: HashMap::new(), parts: HashMap::new(), limit, left: limit.most }
+    }
+
     /// Are so many texels allowed?
     pub fn take(&mut self, texels: u64) -> bool {
         let left = self.left.checked_sub(texels);

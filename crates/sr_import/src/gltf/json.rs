@@ -4,10 +4,10 @@
 
 use sr_scene::{SourceId, Span};
 
+use crate::limits::Limit;
+
 /// Values nested deeper are refused.
 const MAX_DEPTH: usize = 64;
-/// Files of more values are refused: each takes some ten times the room of its text.
-const MAX_VALUES: usize = 1 << 23;
 
 /// A value and its place.
 #[derive(Clone, Debug)]
@@ -73,9 +73,9 @@ impl Value {
     }
 }
 
-/// Parses a text; the error is a byte and half a sentence.
-pub fn parse(text: &str, source: SourceId) -> Result<Value, (usize, String)> {
-    let mut parser = Parser { text, source, at: 0, count: 0 };
+/// Parses a text of at most `limit` values, each of which takes some ten times the room of its text; the error is a byte and half a sentence.
+pub fn parse(text: &str, source: SourceId, limit: Limit) -> Result<Value, (usize, String)> {
+    let mut parser = Parser { text, source, at: 0, count: 0, limit };
     let value = parser.value(0);
     let done = value.and_then(|value| {
         parser.space();
@@ -89,6 +89,7 @@ struct Parser<'t> {
     source: SourceId,
     at: usize,
     count: usize,
+    limit: Limit,
 }
 
 impl Parser<'_> {
@@ -119,8 +120,8 @@ impl Parser<'_> {
         if depth > MAX_DEPTH {
             return Err(format!("values are nested more than {MAX_DEPTH} deep"));
         }
-        if self.count > MAX_VALUES {
-            return Err(format!("it has more than {MAX_VALUES} values"));
+        if self.count > self.limit.len() {
+            return Err(self.limit.refusal(format!("it has more than {} values", self.limit)));
         }
         let start = self.at;
         let kind = match self.peek() {
@@ -248,7 +249,7 @@ mod tests {
     #[test]
     fn values_know_their_places() {
         let text = r#" {"a": [1, -2.5e1, true, null], "b\u00e9\ud83d\ude00\n": {"c": "x"}} "#;
-        let value = parse(text, SourceId(0)).unwrap();
+        let value = parse(text, SourceId(0), Limit::fixed(100)).unwrap();
         assert_eq!(value.get("a").unwrap().list()[1].number(), Some(-25.0));
         assert_eq!(&text[value.get("a").unwrap().list()[1].span.bytes.clone()], "-2.5e1");
         assert_eq!(value.path(&["b\u{e9}\u{1f600}\n", "c"]).unwrap().text(), Some("x"));
@@ -260,7 +261,12 @@ mod tests {
         for (text, at) in
             [("", 0), ("{\"a\" 1}", 5), ("[1,]", 3), ("\"a", 1), ("1 2", 2), ("[1e999]", 1), (&deep, 65)]
         {
-            assert_eq!(parse(text, SourceId(0)).unwrap_err().0, at, "{}", &text[..text.len().min(20)]);
+            assert_eq!(
+                parse(text, SourceId(0), Limit::fixed(100)).unwrap_err().0,
+                at,
+                "{}",
+                &text[..text.len().min(20)]
+            );
         }
     }
 }

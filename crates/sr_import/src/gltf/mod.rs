@@ -43,7 +43,8 @@ pub fn load(
     options: &LoadOptions,
     d: &mut Diagnostics,
 ) -> Option<SceneDesc> {
-    let container = match container::read(bytes) {
+    let limits = options.limits;
+    let container = match container::read(bytes, limits.scene_bytes) {
         Ok(container) => container,
         Err(reason) => {
             let source = d.sources.add(name, "");
@@ -53,7 +54,7 @@ pub fn load(
         }
     };
     let source = d.sources.add(name, container.json.as_str());
-    let root = match json::parse(&container.json, source) {
+    let root = match json::parse(&container.json, source, limits.gltf_values) {
         Ok(root) => root,
         Err((at, reason)) => {
             let span = Span { source, bytes: at..(at + 1).min(container.json.len()) };
@@ -63,8 +64,8 @@ pub fn load(
     };
     drop(container.json);
     let span = Span { source, bytes: 0..0 };
-    let mut document = Document::new(&root, container.binary, Assembly::new(directories, d));
-    document.out.environment = options.environment.clone();
+    let mut document = Document::new(&root, container.binary, Assembly::new(directories, limits, d));
+    document.out.environment.clone_from(&options.environment);
     document.choose_variant(options.variant.as_deref(), &span);
     extensions::report(&root, document.out.d);
     properties::report(&root, document.out.d);

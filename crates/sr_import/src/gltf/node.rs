@@ -11,9 +11,6 @@ use super::json::Value;
 use crate::assembly::MeshSource;
 use crate::mesh::{Convention, Placement};
 
-/// More triangles than these are not placed in all, those of a mesh that several lights show counted each time.
-const MAX_PLACED: usize = 1 << 27;
-
 /// A mesh at a place.
 struct Shown<'v> {
     mesh: usize,
@@ -44,6 +41,7 @@ impl<'v> Document<'v, '_> {
         let mut users: HashMap<usize, usize> = HashMap::new();
         shown.iter().for_each(|s| *users.entry(s.mesh).or_default() += 1);
         let mut groups: HashMap<usize, Option<u32>> = HashMap::new();
+        // Those of a mesh that several lights show are counted each time.
         let mut placed = 0;
         for s in shown {
             let skin = s.node_desc.get("skin").and_then(|skin| self.item("skins", skin));
@@ -60,8 +58,10 @@ impl<'v> Document<'v, '_> {
             let alone = if shared { lit } else { dark.iter().cloned().chain(lit).collect() };
             for part in alone {
                 placed += part.mesh.triangles.len();
-                if placed > MAX_PLACED {
-                    self.error("gltf::too-large", &part.span, format!("more than {MAX_PLACED} triangles"));
+                let limit = self.out.limits.gltf_triangles;
+                if placed > limit.len() {
+                    let message = limit.refusal(format!("more than {limit} triangles"));
+                    self.error("gltf::too-large", &part.span, message);
                     return;
                 }
                 let (shape, mesh) = shape(&part, world);

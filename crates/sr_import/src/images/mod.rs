@@ -9,18 +9,16 @@ mod texels;
 use std::io::Cursor;
 use std::path::Path;
 
-use image::{DynamicImage, ImageError, ImageFormat, ImageReader, Limits};
+use image::{DynamicImage, ImageError, ImageFormat, ImageReader};
 use sr_scene::{Image, Pixels};
 
 use crate::files;
 use crate::jpeg;
+use crate::limits::{Limit, Limits};
 use crate::pfm;
 use crate::values::srgb_to_linear;
 pub use below_coat::BelowCoat;
 pub use texels::{Encoding, TexelMap};
-
-/// Images of more texels are refused before anything is allocated.
-const MAX_TEXELS: u64 = 1 << 28;
 
 /// What a file that Git LFS has not fetched begins with.
 const LFS_POINTER: &[u8] = b"version https://git-lfs.github.com/spec/";
@@ -41,26 +39,26 @@ pub enum Decode {
 }
 
 /// Reads a file; the error is half a sentence.
-pub fn load(path: &Path, decode: Decode) -> Result<Image, String> {
-    decode_bytes(path, &files::read(path, files::MAX_FILE_BYTES)?, decode)
+pub fn load(path: &Path, decode: Decode, limits: &Limits) -> Result<Image, String> {
+    decode_bytes(path, &files::read(path, limits.file_bytes)?, decode, limits.image_texels)
 }
 
-/// Decodes what a file, or a part of one, holds; `path` is what messages call it.
-pub fn decode_bytes(path: &Path, bytes: &[u8], decode: Decode) -> Result<Image, String> {
+/// Decodes what a file, or a part of one, holds, if its texels are no more than the `limit`; `path` is what messages call it.
+pub fn decode_bytes(path: &Path, bytes: &[u8], decode: Decode, limit: Limit) -> Result<Image, String> {
     let linear = |pixels| match decode {
         Decode::Texels(map) => map.apply(pixels, false),
         Decode::BelowCoat(coat) => coat.apply(pixels),
         _ => pixels,
     };
     let (width, height, pixels) = if bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]) {
-        let (width, height, pixels) = open_exr(bytes)?;
+        let (width, height, pixels) = open_exr(bytes, limit)?;
         (width, height, linear(pixels))
     } else if pfm::is_pfm(bytes) {
-        let (width, height, pixels) = pfm::decode(bytes, MAX_TEXELS)?;
+        let (width, height, pixels) = pfm::decode(bytes, limit)?;
         (width, height, linear(pixels))
     } else {
         let image =
-            if jpeg::is_jpeg(bytes) { jpeg::decode(bytes, MAX_TEXELS)? } else { open_other(path, bytes)? };
+            if jpeg::is_jpeg(bytes) { jpeg::decode(bytes, limit)? } else { open_other(path, bytes, limit)? };
         (image.width(), image.height(), convert(image, decode))
     };
     Ok(Image { name: path.display().to_string(), width, height, pixels })
@@ -87,7 +85,7 @@ pub fn texels(path: &Path, bytes: &[u8]) -> u64 {
     size.map_or(0, |(width, height): (u64, u64)| width.saturating_mul(height))
 }
 
-fn open_other(path: &Path, bytes: &[u8]) -> Result<DynamicImage, String> {
+fn open_other(path: &Path, bytes: &[u8], limit: Limit) -> Result<DynamicImage, String> {
     let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
     if reader.format().is_none() {
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
@@ -97,13 +95,13 @@ fn open_other(path: &Path, bytes: &[u8]) -> Result<DynamicImage, String> {
         }
         reader.set_format(ImageFormat::Tga);
     }
-    let mut limits = Limits::default();
+    let mut limits = image::Limits::default();
     (limits.max_image_width, limits.max_image_height) = (Some(1 << 20), Some(1 << 20));
-    limits.max_alloc = Some(MAX_TEXELS * 16);
+    limits.max_alloc = Some(limit.most.saturating_mul(16));
     reader.limits(limits);
     let decoder = reader.into_decoder().map_err(not_decoded)?;
     let (width, height) = image::ImageDecoder::dimensions(&decoder);
-    check_size(u64::from(width), u64::from(height))?;
+    check_size(u64::from(width), u64::from(height), limit)?;
     DynamicImage::from_decoder(decoder).map_err(not_decoded)
 }
 
@@ -133,11 +131,11 @@ pub fn damaged(reason: &str) -> String {
     format!("it is cut off or damaged ({reason}); fetch or save it again")
 }
 
-fn check_size(width: u64, height: u64) -> Result<(), String> {
+fn check_size(width: u64, height: u64, limit: Limit) -> Result<(), String> {
     match width.checked_mul(height) {
         Some(0) => Err("it has no pixels".into()),
-        Some(n) if n <= MAX_TEXELS => Ok(()),
-        _ => Err(format!("it has {width} × {height} pixels; at most {MAX_TEXELS} are read")),
+        Some(n) if n <= limit.most => Ok(()),
+        _ => Err(limit.refusal(format!("it has {width} × {height} pixels; at most {limit} are read"))),
     }
 }
 
@@ -201,11 +199,11 @@ fn exr_not_decoded(error: exr::error::Error) -> String {
     }
 }
 
-fn open_exr(bytes: &[u8]) -> Result<(u32, u32, Pixels), String> {
+fn open_exr(bytes: &[u8], limit: Limit) -> Result<(u32, u32, Pixels), String> {
     use exr::prelude::*;
     let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(exr_not_decoded)?;
     for header in &meta.headers {
-        check_size(header.layer_size.x() as u64, header.layer_size.y() as u64)?;
+        check_size(header.layer_size.x() as u64, header.layer_size.y() as u64, limit)?;
         if header.deep {
             return Err("it has deep data".into());
         }
@@ -255,7 +253,8 @@ mod tests {
 
     #[test]
     fn files_that_are_no_images_are_told_from_cut_ones() {
-        let open = |name: &str, bytes: &[u8]| open_other(Path::new(name), bytes).unwrap_err();
+        let limit = Limits::default().image_texels;
+        let open = |name: &str, bytes: &[u8]| open_other(Path::new(name), bytes, limit).unwrap_err();
         let text = open("a.jpg", b"<html>\n");
         assert!(text.contains("named .jpg but is none") && text.contains("\"<html>\\n\""), "{text}");
         assert!(open("a.txt", b"\xff\xfe").starts_with("its format is not known"));
@@ -273,9 +272,9 @@ mod tests {
         let exr = exr.into_inner();
         for cut in [
             open("a.png", &png[..png.len() / 2]),
-            jpeg::decode(&jpg[..jpg.len() / 2], MAX_TEXELS).unwrap_err(),
-            open_exr(&exr[..exr.len() / 2]).unwrap_err(),
-            open_exr(&exr[..40]).unwrap_err(),
+            jpeg::decode(&jpg[..jpg.len() / 2], limit).unwrap_err(),
+            open_exr(&exr[..exr.len() / 2], limit).unwrap_err(),
+            open_exr(&exr[..40], limit).unwrap_err(),
         ] {
             assert!(cut.starts_with("it is cut off or damaged ("), "{cut}");
         }

@@ -18,9 +18,7 @@ use std::sync::Arc;
 use sr_scene::MeshDesc;
 
 use crate::files;
-
-/// More vertices or triangles than this are refused.
-const MAX_ELEMENTS: usize = 1 << 28;
+use crate::limits::Limits;
 
 /// How to read a mesh file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -37,19 +35,26 @@ pub enum Format {
 }
 
 /// Reads a file; the error is half a sentence.
-pub fn load(path: &Path, format: Format, flip_v: bool) -> Result<RawMesh, String> {
-    let whole = || files::unpacked(files::read(path, files::MAX_FILE_BYTES)?, files::MAX_UNPACKED_BYTES);
+pub fn load(path: &Path, format: Format, flip_v: bool, limits: &Limits) -> Result<RawMesh, String> {
+    let Limits { file_bytes, unpacked_bytes, mesh_elements: limit, .. } = *limits;
+    let whole = || files::unpacked(files::read(path, file_bytes)?, unpacked_bytes);
     let mut fans = Fans::default();
+    let mut textures = Vec::new();
     let mut mesh = match format {
-        Format::Obj => obj::parse(&whole()?, &mut fans)?,
-        Format::Ply => ply::parse(files::open(path, files::MAX_UNPACKED_BYTES)?, &mut fans)?,
-        Format::Serialized { index } => serialized::parse(&whole()?, index)?,
+        Format::Obj => obj::parse(&whole()?, &mut fans, limit)?,
+        Format::Ply => {
+            let content = files::open(path, file_bytes, unpacked_bytes)?;
+            let file = ply::parse(content, &mut fans, limit)?;
+            textures = file.textures;
+            file.mesh
+        }
+        Format::Serialized { index } => serialized::parse(&whole()?, index, limit)?,
     };
     mesh.name = path.display().to_string();
     if flip_v {
         mesh.uvs.iter_mut().for_each(|uv| uv.y = 1.0 - uv.y);
     }
-    Ok(RawMesh { mesh: Arc::new(mesh), fans: fans.0.into() })
+    Ok(RawMesh { mesh: Arc::new(mesh), fans: fans.0.into(), textures: textures.into() })
 }
 
 /// A mesh as it was read.
@@ -59,6 +64,8 @@ pub struct RawMesh {
     pub mesh: Arc<MeshDesc>,
     /// How many of its triangles each polygon was made into, one after another; empty if every polygon is a triangle.
     pub fans: Arc<[u32]>,
+    /// Images that it names for itself.
+    pub textures: Arc<[String]>,
 }
 
 /// [`RawMesh::fans`] as they grow: nothing is kept as long as there are triangles only.

@@ -6,15 +6,16 @@ use std::collections::HashMap;
 use glam::{Vec2, Vec3};
 use sr_scene::MeshDesc;
 
-use super::{Fans, MAX_ELEMENTS};
+use super::Fans;
+use crate::limits::Limit;
 use crate::values::shown;
 
 /// Indices of a corner into the file's lists, from 0.
 type Corner = (u32, Option<u32>, Option<u32>);
 
 /// Parses a file. Corners that share all indices share a vertex, as in Mitsuba.
-pub(super) fn parse(bytes: &[u8], fans: &mut Fans) -> Result<MeshDesc, String> {
-    Ok(read(bytes, fans)?.finish())
+pub(super) fn parse(bytes: &[u8], fans: &mut Fans, limit: Limit) -> Result<MeshDesc, String> {
+    Ok(read(bytes, fans, limit)?.finish())
 }
 
 /// A mesh, and what it says about its materials.
@@ -37,8 +38,8 @@ pub struct Covered {
 }
 
 /// Parses a file with its materials' names and its vertices' colors.
-pub fn parse_covered(bytes: &[u8]) -> Result<Covered, String> {
-    let mut reader = read(bytes, &mut Fans::default())?;
+pub fn parse_covered(bytes: &[u8], limit: Limit) -> Result<Covered, String> {
+    let mut reader = read(bytes, &mut Fans::default(), limit)?;
     let has_colors = reader.colors.len() == reader.positions.len();
     let some_colors = !has_colors && !reader.colors.is_empty();
     let colors = if has_colors { std::mem::take(&mut reader.colors) } else { Vec::new() };
@@ -57,12 +58,15 @@ pub fn parse_covered(bytes: &[u8]) -> Result<Covered, String> {
     Ok(Covered { mesh, libraries, materials, uses, some_colors, left_out, has_flat })
 }
 
-fn read(bytes: &[u8], fans: &mut Fans) -> Result<Reader, String> {
+fn read(bytes: &[u8], fans: &mut Fans, limit: Limit) -> Result<Reader, String> {
     let mut reader = Reader::default();
     for (number, line) in bytes.split(|&b| b == b'\n').enumerate() {
         // Comments and names may be in any encoding; what is read is ASCII.
         let line = String::from_utf8_lossy(line);
         let is_known = reader.line(&line, fans).map_err(|reason| format!("line {}: {reason}", number + 1))?;
+        if reader.elements() > limit.len() {
+            return Err(limit.refusal(format!("line {}: more than {limit} elements", number + 1)));
+        }
         if !is_known && reader.left_out.is_none() {
             let word = line.split_ascii_whitespace().next().unwrap_or("");
             reader.left_out = Some((word.to_owned(), number + 1));
@@ -126,12 +130,12 @@ impl Reader {
             Some("g" | "o") | None => {}
             Some(_) => is_known = false,
         }
-        if self.positions.len().max(self.normals.len()).max(self.uvs.len()).max(self.triangles.len())
-            > MAX_ELEMENTS
-        {
-            return Err(format!("more than {MAX_ELEMENTS} elements"));
-        }
         Ok(is_known)
+    }
+
+    /// The length of the longest list.
+    fn elements(&self) -> usize {
+        self.positions.len().max(self.normals.len()).max(self.uvs.len()).max(self.triangles.len())
     }
 
     fn face<'a>(&mut self, words: impl Iterator<Item = &'a str>, fans: &mut Fans) -> Result<(), String> {
@@ -206,7 +210,7 @@ mod tests {
         let text =
             "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 1\nf 1/1 2/1 3/1 4/1\nf -4/2 -3/1 -2/1\n";
         let mut fans = Fans::default();
-        let mesh = parse(text.as_bytes(), &mut fans).unwrap();
+        let mesh = parse(text.as_bytes(), &mut fans, Limit::fixed(100)).unwrap();
         assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3], [4, 1, 2]]);
         assert_eq!(fans.0, [2, 1]);
         assert_eq!(mesh.positions[4], mesh.positions[0]);
@@ -216,8 +220,12 @@ mod tests {
 
     #[test]
     fn normals_without_texture_coordinates() {
-        let mesh =
-            parse(b"v 0 0 0\nv 1 0 0\nv 1 1 0\nvn 0 0 1\nf 1//1 2//1 3//1", &mut Fans::default()).unwrap();
+        let mesh = parse(
+            b"v 0 0 0\nv 1 0 0\nv 1 1 0\nvn 0 0 1\nf 1//1 2//1 3//1",
+            &mut Fans::default(),
+            Limit::fixed(100),
+        )
+        .unwrap();
         assert_eq!(mesh.normals, [Vec3::Z; 3]);
         assert!(mesh.uvs.is_empty());
     }
@@ -226,14 +234,14 @@ mod tests {
     fn materials_and_colors() {
         let text = "mtllib a b.mtl\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0 0 0 1\nusemtl red #2\nf 1 2 3\nusemtl x\n\
             f 1 2 3\nusemtl red #2\nf 1 2 3 # usemtl x\n";
-        let file = parse_covered(text.as_bytes()).unwrap();
+        let file = parse_covered(text.as_bytes(), Limit::fixed(100)).unwrap();
         assert_eq!(
             (file.libraries, file.materials),
             (vec!["a b.mtl".to_owned()], vec!["red #2".into(), "x".into()])
         );
         assert_eq!(file.uses, [(0, 0), (1, 1), (2, 0)]);
         assert_eq!(file.mesh.vertex_colors, Vec3::AXES);
-        let some = parse_covered(b"v 0 0 0\nv 1 0 0 1 1 1\n").unwrap();
+        let some = parse_covered(b"v 0 0 0\nv 1 0 0 1 1 1\n", Limit::fixed(100)).unwrap();
         assert!(some.some_colors && some.mesh.vertex_colors.is_empty());
     }
 
@@ -247,7 +255,7 @@ mod tests {
             ("v 0 0 0\nf 0 1 1\n", "vertex 0"),
             ("v 0 0 0\nf -9223372036854775808 1 1\n", "does not exist"),
         ] {
-            let error = parse(text.as_bytes(), &mut Fans::default()).unwrap_err();
+            let error = parse(text.as_bytes(), &mut Fans::default(), Limit::fixed(100)).unwrap_err();
             assert!(error.contains(part), "{error}");
         }
     }

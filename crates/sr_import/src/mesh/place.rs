@@ -54,7 +54,10 @@ pub struct Report {
 ///
 /// The front is where vertex normals point (transformed by the inverse transpose); without them it is as the
 /// [`Convention`] has it.
-pub fn place(RawMesh { mesh, fans }: RawMesh, placement: &Placement) -> Result<(MeshDesc, Report), String> {
+pub fn place(
+    RawMesh { mesh, fans, .. }: RawMesh,
+    placement: &Placement,
+) -> Result<(MeshDesc, Report), String> {
     check(&mesh)?;
     if let Some(how) = placement.subdivision {
         return placed(subdivide(&mesh, &fans, how)?, &Placement { flat: false, ..placement.clone() });
@@ -216,7 +219,10 @@ mod tests {
     }
 
     fn raw_placed(mesh: &MeshDesc, placement: &Placement) -> Result<(MeshDesc, Report), String> {
-        place(RawMesh { mesh: std::sync::Arc::new(mesh.clone()), fans: [].into() }, placement)
+        place(
+            RawMesh { mesh: std::sync::Arc::new(mesh.clone()), fans: [].into(), textures: [].into() },
+            placement,
+        )
     }
 
     fn geometric(mesh: &MeshDesc, t: usize) -> Vec3 {

@@ -6,7 +6,7 @@ use flate2::read::ZlibDecoder;
 use glam::{DVec2, DVec3, Vec3};
 use sr_scene::MeshDesc;
 
-use super::MAX_ELEMENTS;
+use crate::limits::Limit;
 
 const MAGIC: u16 = 0x041C;
 const HAS_NORMALS: u32 = 0x0001;
@@ -16,7 +16,7 @@ const FACE_NORMALS: u32 = 0x0010;
 const DOUBLE: u32 = 0x2000;
 
 /// Reads the mesh `index` of a file.
-pub fn parse(bytes: &[u8], index: u32) -> Result<MeshDesc, String> {
+pub fn parse(bytes: &[u8], index: u32, limit: Limit) -> Result<MeshDesc, String> {
     let version = header(bytes, 0)?;
     let count = u32_at(bytes, bytes.len().checked_sub(4).ok_or("it is truncated")?)?;
     if index >= count {
@@ -30,7 +30,7 @@ pub fn parse(bytes: &[u8], index: u32) -> Result<MeshDesc, String> {
     let offset = usize::try_from(offset).map_err(|_| "an offset beyond its end")?;
     let version = header(bytes, offset)?;
     let stream = bytes.get(offset..).and_then(|b| b.get(4..)).ok_or("it is truncated")?;
-    Stream { zlib: BufReader::new(ZlibDecoder::new(stream)) }.mesh(version)
+    Stream { zlib: BufReader::new(ZlibDecoder::new(stream)), limit }.mesh(version)
 }
 
 fn header(bytes: &[u8], at: usize) -> Result<u16, String> {
@@ -57,6 +57,7 @@ fn u64_at(bytes: &[u8], at: usize) -> Result<u64, String> {
 /// Grows arrays with what the stream really holds, so that a false count costs nothing.
 struct Stream<'a> {
     zlib: BufReader<ZlibDecoder<&'a [u8]>>,
+    limit: Limit,
 }
 
 impl Stream<'_> {
@@ -98,11 +99,12 @@ impl Stream<'_> {
     }
 
     fn count(&mut self, what: &str) -> Result<usize, String> {
+        let limit = self.limit;
         let count = u64::from_le_bytes(self.array()?);
         usize::try_from(count)
             .ok()
-            .filter(|&n| n <= MAX_ELEMENTS)
-            .ok_or_else(|| format!("{count} {what}; at most {MAX_ELEMENTS} are read"))
+            .filter(|&n| n <= limit.len())
+            .ok_or_else(|| limit.refusal(format!("{count} {what}; at most {limit} are read")))
     }
 
     fn vec3s(&mut self, count: usize, double: bool) -> Result<Vec<Vec3>, String> {
@@ -178,11 +180,11 @@ mod tests {
     fn versions_and_precisions() {
         for (version, double) in [(3, false), (3, true), (4, false), (4, true)] {
             let bytes = file(version, double);
-            let mesh = parse(&bytes, 1).unwrap();
+            let mesh = parse(&bytes, 1, Limit::fixed(100)).unwrap();
             assert_eq!(mesh.positions, [Vec3::Z, Vec3::new(1.0, 0.0, 1.0), Vec3::new(0.0, 1.0, 1.0)]);
             assert_eq!(mesh.uvs, [Vec2::ZERO, Vec2::X, Vec2::Y]);
             assert_eq!(mesh.triangles, [[0, 1, 2]]);
-            assert!(parse(&bytes, 2).unwrap_err().contains("2 meshes"));
+            assert!(parse(&bytes, 2, Limit::fixed(100)).unwrap_err().contains("2 meshes"));
         }
     }
 
@@ -190,10 +192,10 @@ mod tests {
     fn truncations_and_changed_bytes_do_not_panic() {
         let whole = file(4, false);
         for at in 0..whole.len() {
-            assert!(parse(&whole[..at], 0).is_err());
+            assert!(parse(&whole[..at], 0, Limit::fixed(100)).is_err());
             let mut changed = whole.clone();
             changed[at] ^= 0xff;
-            let _ = parse(&changed, 1);
+            let _ = parse(&changed, 1, Limit::fixed(100));
         }
     }
 }

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use glam::Vec3;
 use sr_scene::MeshDesc;
 
-use super::MAX_ELEMENTS;
+use crate::limits::Limit;
 use crate::values::shown;
 
 /// Of a binary file: a text that means nothing, and the number of facets.
@@ -21,17 +21,21 @@ pub struct Stl {
 }
 
 /// Parses a file; the error is half a sentence. Normals are worked out from the corners, whatever the file says.
-pub fn parse(bytes: &[u8]) -> Result<Stl, String> {
+pub fn parse(bytes: &[u8], limit: Limit) -> Result<Stl, String> {
     // Some binary files begin with "solid" too; text has no length that its bytes 80 to 83 tell.
     let starts_as_text = bytes.trim_ascii_start().get(..5).is_some_and(|b| b.eq_ignore_ascii_case(b"solid"));
     let declared =
         bytes.get(80..HEADER).map_or(0, |b| b.iter().rev().fold(0, |n, &b| n << 8 | usize::from(b)));
     let fits = bytes.len() == HEADER + FACET * declared;
     let head = &bytes[..bytes.len().min(1024)];
-    if starts_as_text && !fits && !head.contains(&0) { text(bytes) } else { binary(bytes, declared) }
+    if starts_as_text && !fits && !head.contains(&0) {
+        text(bytes, limit)
+    } else {
+        binary(bytes, declared, limit)
+    }
 }
 
-fn binary(bytes: &[u8], declared: usize) -> Result<Stl, String> {
+fn binary(bytes: &[u8], declared: usize, limit: Limit) -> Result<Stl, String> {
     let Some((_, facets)) = bytes.split_at_checked(HEADER) else {
         return Err(format!("it has {} bytes, fewer than the header's {HEADER}", bytes.len()));
     };
@@ -53,7 +57,7 @@ fn binary(bytes: &[u8], declared: usize) -> Result<Stl, String> {
     for facet in facets.chunks_exact(FACET).take(count) {
         let number = |at: usize| f32::from_le_bytes(std::array::from_fn(|i| facet[4 * at + i]));
         let corner = |c: usize| Vec3::new(number(3 * c), number(3 * c + 1), number(3 * c + 2));
-        welded.add([corner(1), corner(2), corner(3)])?;
+        welded.add([corner(1), corner(2), corner(3)], limit)?;
         has_colors |= facet[FACET - 2..] != [0, 0];
     }
     if has_colors {
@@ -62,7 +66,7 @@ fn binary(bytes: &[u8], declared: usize) -> Result<Stl, String> {
     Ok(Stl { mesh: welded.finish(), notes })
 }
 
-fn text(bytes: &[u8]) -> Result<Stl, String> {
+fn text(bytes: &[u8], limit: Limit) -> Result<Stl, String> {
     let mut welded = Welded::default();
     let mut corners: Vec<Vec3> = Vec::with_capacity(3);
     let mut is_open = false;
@@ -91,7 +95,7 @@ fn text(bytes: &[u8]) -> Result<Stl, String> {
                 let facet: [Vec3; 3] = corners
                     .try_into()
                     .map_err(|c: Vec<Vec3>| fail(format!("a facet has {} vertices, not three", c.len())))?;
-                welded.add(facet).map_err(fail)?;
+                welded.add(facet, limit).map_err(fail)?;
             }
             "" | "facet" | "outer" | "endloop" => {}
             other => return Err(fail(format!("\"{}\" is no word of this format", shown(other)))),
@@ -112,9 +116,9 @@ struct Welded {
 }
 
 impl Welded {
-    fn add(&mut self, corners: [Vec3; 3]) -> Result<(), String> {
-        if self.triangles.len() >= MAX_ELEMENTS || self.positions.len() >= MAX_ELEMENTS {
-            return Err(format!("more than {MAX_ELEMENTS} elements"));
+    fn add(&mut self, corners: [Vec3; 3], limit: Limit) -> Result<(), String> {
+        if self.triangles.len().max(self.positions.len()) >= limit.len() {
+            return Err(limit.refusal(format!("more than {limit} elements")));
         }
         let triangle = corners.map(|p| {
             // -0 and 0 are the same place.
@@ -136,6 +140,10 @@ impl Welded {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn parse(bytes: &[u8]) -> Result<Stl, String> {
+        super::parse(bytes, Limit::fixed(100))
+    }
 
     /// Two triangles that share an edge, after a header that declares `declared`.
     fn file(header: &[u8], declared: u32) -> Vec<u8> {

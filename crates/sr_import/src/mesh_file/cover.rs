@@ -197,7 +197,7 @@ impl MeshScene<'_, '_> {
     }
 
     /// An image's texture; without the file, `None` and a warning: such files travel without their images.
-    fn image(&mut self, map: &Map, decode: Decode) -> Option<TextureId> {
+    pub(super) fn image(&mut self, map: &Map, decode: Decode) -> Option<TextureId> {
         if !self.out.find(&map.file).is_file() {
             let message = format!("there is no image {}", crate::values::shown(&map.file));
             let missing = Diagnostic::warning("mtl::no-image", &map.span, message);

@@ -53,7 +53,8 @@ pub fn load(path: &Path, kind: Kind, options: &LoadOptions, d: &mut Diagnostics)
     let span = Span { source: d.sources.add(path.display().to_string(), ""), bytes: 0..0 };
     let directory = path.parent().unwrap_or(Path::new("")).to_owned();
     let directories = files::Directories::new(directory, &options.search_paths).into_list();
-    let mut scene = MeshScene { out: Assembly::new(directories, d), path, span, shines: false };
+    let mut scene =
+        MeshScene { out: Assembly::new(directories, options.limits, d), path, span, shines: false };
     scene.out.environment.clone_from(&options.environment);
     let read = match kind {
         Kind::Obj => scene.obj(),

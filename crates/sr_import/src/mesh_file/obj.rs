@@ -9,16 +9,21 @@ use sr_scene::{ColorInput, Diagnostic, MeshColorOf, MeshDesc, TextureDesc};
 use super::mtl::{self, Mtl};
 use super::{GREY, MeshScene, as_it_is};
 use crate::files;
+use crate::limits::{Limit, Limits};
 use crate::mesh::{normals, obj};
 use crate::values::shown;
 
 /// More bytes of materials are refused, in all files together.
 const MAX_MTL_BYTES: u64 = 64 << 20;
 
+/// More files of materials are not read.
+const MAX_LIBRARIES: usize = 256;
+
 impl MeshScene<'_, '_> {
     pub(super) fn obj(&mut self) -> Result<(), String> {
-        let bytes = files::read(self.path, files::MAX_FILE_BYTES)?;
-        let mut file = obj::parse_covered(&files::unpacked(bytes, files::MAX_UNPACKED_BYTES)?)?;
+        let Limits { file_bytes, unpacked_bytes, mesh_elements, .. } = self.out.limits;
+        let bytes = files::read(self.path, file_bytes)?;
+        let mut file = obj::parse_covered(&files::unpacked(bytes, unpacked_bytes)?, mesh_elements)?;
         if file.some_colors {
             let message = "some vertices have colors and some have none";
             let warning = Diagnostic::warning("obj::vertex-colors", &self.span, message);
@@ -73,12 +78,23 @@ impl MeshScene<'_, '_> {
         let mut left = MAX_MTL_BYTES;
         let mut done: Vec<&str> = Vec::new();
         for name in names {
-            if done.contains(&name.as_str()) || done.len() >= 256 {
+            if done.contains(&name.as_str()) {
                 continue;
+            }
+            if done.len() >= MAX_LIBRARIES {
+                let message = format!(
+                    "more than {MAX_LIBRARIES} files of materials are named, \"{}\" after these",
+                    shown(name)
+                );
+                let warning = Diagnostic::warning("obj::no-library", &self.span, message);
+                self.out.d.push(
+                    warning.consequence("it is not read, nor what follows; what they would cover is grey"),
+                );
+                break;
             }
             done.push(name);
             let path = self.out.find(&name.replace('\\', "/"));
-            match files::read(&path, left) {
+            match files::read(&path, Limit::fixed(left)) {
                 Ok(bytes) => {
                     left -= bytes.len() as u64;
                     let text = String::from_utf8_lossy(&bytes).into_owned();

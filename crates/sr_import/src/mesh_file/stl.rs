@@ -8,6 +8,7 @@ use sr_scene::{ColorInput, Diagnostic};
 
 use super::{GREY, MeshScene, as_it_is};
 use crate::files;
+use crate::limits::Limits;
 use crate::mesh::{Placement, stl};
 
 /// Facets that meet at less than this are one smooth surface, in degrees.
@@ -15,8 +16,9 @@ const SMOOTH_DEG: f32 = 30.0;
 
 impl MeshScene<'_, '_> {
     pub(super) fn stl(&mut self) -> Result<(), String> {
-        let bytes = files::read(self.path, files::MAX_FILE_BYTES)?;
-        let stl::Stl { mesh, notes } = stl::parse(&files::unpacked(bytes, files::MAX_UNPACKED_BYTES)?)?;
+        let Limits { file_bytes, unpacked_bytes, mesh_elements, .. } = self.out.limits;
+        let bytes = files::read(self.path, file_bytes)?;
+        let stl::Stl { mesh, notes } = stl::parse(&files::unpacked(bytes, unpacked_bytes)?, mesh_elements)?;
         for (message, consequence) in notes {
             let message = format!("{}: {message}", self.path.display());
             self.out.d.push(Diagnostic::warning("stl::header", &self.span, message).consequence(consequence));

@@ -27,8 +27,12 @@ pub fn load(
     options: &LoadOptions,
     diagnostics: &mut Diagnostics,
 ) -> Option<SceneDesc> {
-    let scene = xml::read(name, text, directories, &options.defines, diagnostics)?;
-    let environment = options.environment.clone();
-    let origin = Origin { legacy: scene.legacy, directories: scene.directories.into_list(), environment };
+    let scene = xml::read(name, text, directories, options, diagnostics)?;
+    let origin = Origin {
+        legacy: scene.legacy,
+        directories: scene.directories.into_list(),
+        environment: options.environment.clone(),
+        limits: options.limits,
+    };
     lower(&scene.root, &origin, diagnostics)
 }

@@ -143,7 +143,7 @@ impl Reader<'_> {
             self.notes().push(note);
             return Some((span, Curve::Constant(1.0)));
         }
-        let read = files::read(&path, files::MAX_SCENE_BYTES)
+        let read = files::read(&path, self.out.limits.scene_bytes)
             .and_then(|bytes| values::spectrum_file(&String::from_utf8_lossy(&bytes)));
         match read {
             Ok(samples) => Some((span, Curve::Samples(samples))),

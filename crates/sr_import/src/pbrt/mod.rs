@@ -30,7 +30,9 @@ use std::path::PathBuf;
 
 use sr_scene::{Diagnostic, Diagnostics, MaterialId, SceneDesc, Span};
 
+use crate::LoadOptions;
 use crate::assembly::Assembly;
+use crate::limits::Limits;
 use params::Notes;
 use state::{Saved, State};
 pub use support::table as support_table;
@@ -47,13 +49,13 @@ pub fn load(
     name: &str,
     mut text: Text,
     directories: Vec<PathBuf>,
-    environment: Option<PathBuf>,
+    options: &LoadOptions,
     diagnostics: &mut Diagnostics,
 ) -> Option<SceneDesc> {
     let source = diagnostics.sources.add(name, "");
     let span = Span { source, bytes: 0..text.text.len().min(1) };
-    let mut reader = Reader::new(directories, diagnostics);
-    reader.out.environment = environment;
+    let mut reader = Reader::new(directories, options.limits, diagnostics);
+    reader.out.environment.clone_from(&options.environment);
     reader.open_files.push(PathBuf::from(name));
     reader.run(&mut text, source);
     reader.out.d.sources.set_text(source, text.text);
@@ -93,9 +95,9 @@ struct Reader<'d> {
 }
 
 impl<'d> Reader<'d> {
-    fn new(directories: Vec<PathBuf>, diagnostics: &'d mut Diagnostics) -> Self {
+    fn new(directories: Vec<PathBuf>, limits: Limits, diagnostics: &'d mut Diagnostics) -> Self {
         Self {
-            out: Assembly::new(directories, diagnostics),
+            out: Assembly::new(directories, limits, diagnostics),
             said: HashSet::new(),
             state: State::default(),
             stack: Vec::new(),

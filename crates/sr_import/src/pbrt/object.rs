@@ -8,9 +8,6 @@ use super::params::Notes;
 use super::state::Saved;
 use crate::values::shown;
 
-/// Instances that a scene may have.
-const MAX_INSTANCES: usize = 1 << 22;
-
 impl Reader<'_> {
     pub(super) fn object_begin(&mut self, name: &str, span: Span) {
         if self.object.is_some() {
@@ -38,8 +35,9 @@ impl Reader<'_> {
             Self::unresolved(&mut notes, span, message, name, self.objects.keys(), "nothing is shown here");
             return;
         };
-        if self.out.instances.len() >= MAX_INSTANCES {
-            let message = format!("more than {MAX_INSTANCES} instances");
+        let limit = self.out.limits.pbrt_instances;
+        if self.out.instances.len() >= limit.len() {
+            let message = limit.refusal(format!("more than {limit} instances"));
             self.error("pbrt::too-many-instances", span, message);
             self.is_broken = true;
             return;

@@ -10,16 +10,11 @@ use super::state::{Active, Inherited, Saved, State};
 use super::syntax::{Result, Scanner, SyntaxError, Text};
 use super::{Reader, support};
 use crate::color_space::ColorSpace;
+use crate::limits::Limits;
 use crate::values::shown;
 
 /// Files within files, and attributes within attributes.
 const MAX_DEPTH: usize = 64;
-
-/// More files are refused.
-const MAX_INCLUDES: usize = 4096;
-
-/// All included texts together may have this many bytes.
-const MAX_INCLUDED_BYTES: usize = 1 << 30;
 
 /// Parameters that `Attribute` may give to one kind of directive, and values of one of them: each directive has them.
 const MAX_ATTRIBUTES: usize = 256;
@@ -167,12 +162,13 @@ impl Reader<'_> {
     fn include(&mut self, name: &str, span: &Span) {
         let path = self.out.find(name);
         self.includes += 1;
+        let Limits { scene_bytes, included_bytes, pbrt_includes: includes, .. } = self.out.limits;
         let refused = if self.open_files.contains(&path) {
             Some(format!("{} includes itself", path.display()))
-        } else if self.open_files.len() > MAX_DEPTH || self.includes > MAX_INCLUDES {
-            Some(format!(
-                "more than {MAX_INCLUDES} files are included, or more than {MAX_DEPTH} within another"
-            ))
+        } else if self.includes > includes.len() {
+            Some(includes.refusal(format!("more than {includes} files are included")))
+        } else if self.open_files.len() > MAX_DEPTH {
+            Some(format!("more than {MAX_DEPTH} files are included within one another"))
         } else {
             None
         };
@@ -181,13 +177,11 @@ impl Reader<'_> {
             self.is_broken = true;
             return;
         }
-        match Text::read(&path) {
-            Ok(text) if self.included_bytes + text.bytes > MAX_INCLUDED_BYTES => {
-                self.error(
-                    "pbrt::include",
-                    span,
-                    format!("more than {MAX_INCLUDED_BYTES} bytes are included"),
-                );
+        match Text::read(&path, scene_bytes) {
+            Ok(text) if self.included_bytes + text.bytes > included_bytes.len() => {
+                let message =
+                    included_bytes.refusal(format!("more than {included_bytes} bytes are included"));
+                self.error("pbrt::include", span, message);
                 self.is_broken = true;
             }
             Ok(mut text) => {

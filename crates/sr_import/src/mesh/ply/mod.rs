@@ -12,11 +12,18 @@ use ply_rs_bw::ply::{
 };
 use sr_scene::MeshDesc;
 
-use super::{Fans, MAX_ELEMENTS};
+use super::Fans;
 use crate::files::{self, Content};
+use crate::limits::Limit;
+
+/// A mesh, and the images that comments in its header name: `TextureFile NAME`, as MeshLab writes them.
+pub struct Ply {
+    pub mesh: MeshDesc,
+    pub textures: Vec<String>,
+}
 
 /// Parses a file.
-pub fn parse(Content { reader, length }: Content, fans: &mut Fans) -> Result<MeshDesc, String> {
+pub fn parse(Content { reader, length }: Content, fans: &mut Fans, limit: Limit) -> Result<Ply, String> {
     let mut stream = BufReader::with_capacity(1 << 16, reader);
     let mut text = Reader::new(Cursor::new(header_of(&mut stream)?));
     let header = Parser::<Ignored>::new().read_header(&mut text).map_err(|e| one_line(&e))?;
@@ -30,7 +37,11 @@ pub fn parse(Content { reader, length }: Content, fans: &mut Fans) -> Result<Mes
     };
     for (name, element) in &header.elements {
         // An element takes at least a byte: a count beyond the file's size is a lie that would cost time and memory.
-        if element.count as u64 > length.min(MAX_ELEMENTS as u64) {
+        if element.count as u64 > limit.most {
+            let (count, what) = (element.count, format!("elements \"{name}\""));
+            return Err(limit.refusal(format!("{count} {what}; at most {limit} are read")));
+        }
+        if element.count as u64 > length {
             return Err(format!("{} elements \"{name}\" do not fit into the file", element.count));
         }
         if name == "vertex" && !Columns::of(element).positions {
@@ -50,7 +61,9 @@ pub fn parse(Content { reader, length }: Content, fans: &mut Fans) -> Result<Mes
     if !header.elements.contains_key("vertex") {
         return Err("it has no vertices".into());
     }
-    Ok(mesh)
+    let textures = header.comments.iter().filter_map(|comment| comment.trim().strip_prefix("TextureFile"));
+    let textures = textures.map(|name| name.trim().to_owned()).filter(|name| !name.is_empty()).collect();
+    Ok(Ply { mesh, textures })
 }
 
 /// All lines to that which ends the header.
@@ -297,7 +310,7 @@ impl PropertyAccess for Ignored {
 #[cfg(test)]
 fn parse_bytes(bytes: &[u8], fans: &mut Fans) -> Result<MeshDesc, String> {
     let reader = Box::new(Cursor::new(bytes.to_vec()));
-    parse(Content { reader, length: bytes.len() as u64 }, fans)
+    parse(Content { reader, length: bytes.len() as u64 }, fans, Limit::fixed(1 << 20)).map(|file| file.mesh)
 }
 
 #[cfg(test)]

@@ -16,10 +16,8 @@ use rayon::prelude::*;
 use sr_scene::MeshDesc;
 
 use super::normals;
+use crate::limits;
 use topology::{Edges, Surface};
-
-/// Faces that are made at most.
-const MAX_FACES: u64 = 1 << 20;
 
 /// How to refine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,7 +39,7 @@ pub struct Subdivision {
 
 impl Subdivision {
     /// How many faces a mesh will have; the error, half a sentence, where these are too many.
-    pub fn faces(&self, mesh: &MeshDesc, fans: &[u32]) -> Result<u64, String> {
+    pub fn faces(&self, mesh: &MeshDesc, fans: &[u32], limit: limits::Limit) -> Result<u64, String> {
         let triangles = mesh.triangles.len() as u64;
         // The first time makes four of a triangle, and of a polygon as many as it has corners.
         let first = match self.scheme {
@@ -50,12 +48,14 @@ impl Subdivision {
             Scheme::Loop => 4 * triangles,
         };
         let growth = 4u64.checked_pow(self.levels.saturating_sub(1));
-        growth.and_then(|growth| first.checked_mul(growth)).filter(|&faces| faces <= MAX_FACES).ok_or_else(|| {
-            format!(
-                "subdivided {} times it would have more than {MAX_FACES} faces; the first time makes {first}",
-                self.levels
-            )
-        })
+        growth.and_then(|growth| first.checked_mul(growth)).filter(|&faces| faces <= limit.most).ok_or_else(
+            || {
+                limit.refusal(format!(
+                    "subdivided {} times it would have more than {limit} faces; the first time makes {first}",
+                    self.levels
+                ))
+            },
+        )
     }
 }
 
@@ -268,13 +268,13 @@ mod tests {
         // closed: as many vertices as Euler's formula has
         assert_eq!(quads.positions.len(), 24 * 4 + 2);
         for (scheme, levels) in [(Scheme::Loop, 2), (Scheme::CatmullClark, 2)] {
-            let counted = how(scheme, levels).faces(&cube, &fans).unwrap();
+            let counted = how(scheme, levels).faces(&cube, &fans, limits::Limit::fixed(1 << 20)).unwrap();
             let made = subdivide(&cube, &fans, how(scheme, levels)).unwrap().triangles.len() as u64;
             assert_eq!(counted * if scheme == Scheme::Loop { 1 } else { 2 }, made);
         }
-        let too_many = how(Scheme::CatmullClark, 10).faces(&cube, &fans);
+        let too_many = how(Scheme::CatmullClark, 10).faces(&cube, &fans, limits::Limit::fixed(1 << 20));
         assert!(too_many.unwrap_err().contains("10 times"));
-        assert!(how(Scheme::Loop, u32::MAX).faces(&cube, &fans).is_err());
+        assert!(how(Scheme::Loop, u32::MAX).faces(&cube, &fans, limits::Limit::fixed(1 << 20)).is_err());
     }
 
     #[test]

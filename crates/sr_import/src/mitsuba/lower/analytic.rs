@@ -113,7 +113,7 @@ impl<'a> Lowering<'a, '_> {
             return None;
         };
         let path = self.out.find(name);
-        match curves::load(&path, basis, &to_world) {
+        match curves::load(&path, basis, &to_world, &self.out.limits) {
             Ok((curves, note)) => {
                 if let Some(note) = note {
                     let message = format!("{}: {note}", path.display());

@@ -100,7 +100,7 @@ impl<'a> Lowering<'a, '_> {
             SpectrumValue::Samples(samples) => convert(&|w| sr_spectra::interpolate(samples, w)),
             SpectrumValue::File(name) => {
                 let path = self.out.find(name);
-                let read = files::read(&path, files::MAX_SCENE_BYTES)
+                let read = files::read(&path, self.out.limits.scene_bytes)
                     .and_then(|bytes| values::spectrum_file(&String::from_utf8_lossy(&bytes)));
                 match read {
                     Ok(samples) => convert(&|w| sr_spectra::interpolate(&samples, w)),

@@ -8,6 +8,7 @@ use sr_scene::{ColorInput, Diagnostic, LightDesc, Portal, Rgb, SphereMapping, Sp
 use super::Lowering;
 use super::color::Role;
 use crate::images::Decode;
+use crate::limits::Limit;
 use crate::mitsuba::node::Node;
 use crate::mitsuba::props::Props;
 use crate::{files, ies};
@@ -172,8 +173,8 @@ impl<'a> Lowering<'a, '_> {
             return None;
         };
         let path = self.out.find(name);
-        let read =
-            files::read(&path, ies::MAX_BYTES).and_then(|b| ies::parse(&path.display().to_string(), &b));
+        let read = files::read(&path, Limit::fixed(ies::MAX_BYTES))
+            .and_then(|b| ies::parse(&path.display().to_string(), &b));
         match read {
             Ok(profile) => Some(LightDesc::Profile {
                 world_from_light,

@@ -7,9 +7,6 @@ use super::{Lowering, key};
 use crate::mitsuba::node::Node;
 use crate::mitsuba::props::Props;
 
-/// Instances that the scene may have when those inside groups are counted wherever their group is shown.
-const MAX_INSTANCES: usize = 1 << 20;
-
 /// Groups inside groups.
 const MAX_DEPTH: usize = 64;
 
@@ -83,9 +80,11 @@ impl<'a> Lowering<'a, '_> {
         let mut open = vec![outermost];
         while let Some(Inner { group, outer_from_inner }) = open.pop() {
             self.placements += 1;
-            if self.placements > MAX_INSTANCES {
-                if self.placements == MAX_INSTANCES + 1 {
-                    let message = format!("more than {MAX_INSTANCES} instances, those inside groups counted");
+            let limit = self.out.limits.mitsuba_instances;
+            if self.placements > limit.len() {
+                if self.placements == limit.len() + 1 {
+                    let what = format!("more than {limit} instances, those inside groups counted");
+                    let message = limit.refusal(what);
                     self.out.d.push(Diagnostic::error("mitsuba::too-many-instances", &node.span, message));
                 }
                 return;

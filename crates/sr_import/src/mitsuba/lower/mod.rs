@@ -24,6 +24,7 @@ use std::path::PathBuf;
 use sr_scene::{Diagnostic, Diagnostics, MaterialId, SceneDesc, Span};
 
 use crate::assembly::Assembly;
+use crate::limits::Limits;
 use crate::mitsuba::node::{Child, Node};
 use crate::mitsuba::plugins;
 use crate::mitsuba::props::Props;
@@ -39,6 +40,8 @@ pub struct Origin {
     pub directories: Vec<PathBuf>,
     /// An image of latitude and longitude, +Y up, that is put around the scene.
     pub environment: Option<PathBuf>,
+    /// How much is taken in.
+    pub limits: Limits,
 }
 
 /// Lowers a `<scene>` and validates it.
@@ -79,7 +82,7 @@ impl<'a, 'd> Lowering<'a, 'd> {
     fn new(origin: &'a Origin, d: &'d mut Diagnostics) -> Self {
         Self {
             origin,
-            out: Assembly::new(origin.directories.clone(), d),
+            out: Assembly::new(origin.directories.clone(), origin.limits, d),
             ids: HashMap::new(),
             materials_done: HashMap::new(),
             textures_done: HashMap::new(),

@@ -11,9 +11,6 @@ use crate::mitsuba::attributes::Attributes;
 use crate::mitsuba::node::Node;
 use crate::values::shown;
 
-/// More files are refused.
-const MAX_INCLUDES: usize = 256;
-
 /// The files that are being read.
 pub struct Includes {
     /// The outermost first.
@@ -42,15 +39,17 @@ impl Reader<'_> {
         if self.includes.open.contains(&path) {
             return Err(format!("{} includes itself", path.display()));
         }
-        if self.includes.open.len() > MAX_DEPTH || self.includes.count > MAX_INCLUDES {
-            return Err(format!(
-                "more than {MAX_INCLUDES} files are included, or more than {MAX_DEPTH} within another"
-            ));
+        let limit = self.limits.mitsuba_includes;
+        if self.includes.count > limit.len() {
+            return Err(limit.refusal(format!("more than {limit} files are included")));
         }
-        let text = files::read_text(&path)
+        if self.includes.open.len() > MAX_DEPTH {
+            return Err(format!("more than {MAX_DEPTH} files are included within one another"));
+        }
+        let text = files::read_text(&path, self.limits.scene_bytes)
             .map_err(|reason| format!("cannot include {}: {reason}", path.display()))?;
         let source = self.diagnostics.sources.add(path.display().to_string(), &*text);
-        let document = match syntax::parse(source, &text) {
+        let document = match syntax::parse(source, &text, self.limits.xml_nodes) {
             Ok(document) => document,
             Err(diagnostic) => {
                 self.diagnostics.push(diagnostic);

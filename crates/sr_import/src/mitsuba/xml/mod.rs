@@ -24,7 +24,9 @@ use std::collections::HashMap;
 
 use sr_scene::{Diagnostic, Diagnostics, Span};
 
+use crate::LoadOptions;
 use crate::files::Directories;
+use crate::limits::Limits;
 use crate::mitsuba::node::Node;
 use crate::values::shown;
 use elements::Kind;
@@ -52,6 +54,7 @@ struct Reader<'d> {
     parameters: Parameters,
     directories: Directories,
     includes: Includes,
+    limits: Limits,
     aliases: Vec<alias::Alias>,
     /// For each object that is being read, the outermost first: where its properties are, by canonical name.
     names: Vec<HashMap<String, usize>>,
@@ -62,11 +65,13 @@ pub fn read(
     name: &str,
     text: &str,
     directories: Directories,
-    defines: &[(String, String)],
+    options: &LoadOptions,
     diagnostics: &mut Diagnostics,
 ) -> Option<XmlScene> {
     let source = diagnostics.sources.add(name, text);
-    let document = syntax::parse(source, text).map_err(|diagnostic| diagnostics.push(diagnostic)).ok()?;
+    let document = syntax::parse(source, text, options.limits.xml_nodes)
+        .map_err(|diagnostic| diagnostics.push(diagnostic))
+        .ok()?;
     let element = document.root_element();
     let span = reader::start_tag(source, element);
     let tag = element.tag_name().name();
@@ -81,9 +86,10 @@ pub fn read(
     let mut reader = Reader {
         diagnostics,
         legacy,
-        parameters: Parameters::new(defines),
+        parameters: Parameters::new(&options.defines),
         directories,
         includes: Includes::new(name),
+        limits: options.limits,
         aliases: Vec::new(),
         names: vec![HashMap::new()],
     };

@@ -3,15 +3,16 @@
 use roxmltree::{Document, Error, ParsingOptions};
 use sr_scene::{Diagnostic, SourceId, Span};
 
-const MAX_NODES: u32 = 16 << 20;
+use crate::limits::Limit;
 
 /// Parses a text. Document type definitions, and with them entities, are refused.
-pub fn parse(source: SourceId, text: &str) -> Result<Document<'_>, Diagnostic> {
-    let options = ParsingOptions { allow_dtd: false, nodes_limit: MAX_NODES, entity_resolver: None };
-    Document::parse_with_options(text, options).map_err(|error| syntax_error(source, text, &error))
+pub fn parse(source: SourceId, text: &str, limit: Limit) -> Result<Document<'_>, Diagnostic> {
+    let nodes_limit = u32::try_from(limit.most).unwrap_or(u32::MAX);
+    let options = ParsingOptions { allow_dtd: false, nodes_limit, entity_resolver: None };
+    Document::parse_with_options(text, options).map_err(|error| syntax_error(source, text, &error, limit))
 }
 
-fn syntax_error(source: SourceId, text: &str, error: &Error) -> Diagnostic {
+fn syntax_error(source: SourceId, text: &str, error: &Error, limit: Limit) -> Diagnostic {
     let whole = Span { source, bytes: 0..0 };
     match error {
         Error::UnexpectedEndOfStream | Error::UnclosedRootNode => truncated(source, text),
@@ -21,7 +22,8 @@ fn syntax_error(source: SourceId, text: &str, error: &Error) -> Diagnostic {
             Diagnostic::error("xml::dtd", &whole, message).consequence("remove it: scenes do not need one")
         }
         Error::NodesLimitReached | Error::AttributesLimitReached | Error::NamespacesLimitReached => {
-            Diagnostic::error("xml::too-large", &whole, format!("more than {MAX_NODES} XML nodes"))
+            let message = limit.refusal(format!("more than {limit} XML nodes"));
+            Diagnostic::error("xml::too-large", &whole, message)
         }
         other => {
             let position = other.pos();

@@ -63,7 +63,7 @@ impl Reader<'_> {
     /// An image that is read at once, because something has to be worked out from it.
     pub(super) fn image_now(&mut self, file: &str, span: &Span) -> Option<(Arc<Image>, u32)> {
         let path = self.out.find(file);
-        match images::load(&path, Decode::Linear) {
+        match images::load(&path, Decode::Linear, &self.out.limits) {
             Ok(image) => {
                 let image = Arc::new(image);
                 let index = self.out.image_in_memory(&image);

@@ -11,6 +11,7 @@ use std::path::Path;
 use rayon::prelude::*;
 
 use crate::files::{self, Content};
+use crate::limits::Limit;
 
 /// Bytes that are looked at together.
 const BLOCK: usize = 1 << 22;
@@ -82,20 +83,13 @@ impl Text {
         Self { bytes: text.len(), text, lists: HashMap::new() }
     }
 
-    /// Reads a file, unpacked, as UTF-8; what is none becomes `\u{fffd}`, which no keyword has. The error is half a sentence.
-    pub fn read(path: &Path) -> Result<Self, String> {
-        let content = files::open(path, files::MAX_SCENE_BYTES)?;
-        if content.length > files::MAX_SCENE_BYTES {
-            return Err(format!(
-                "it has {} bytes; at most {} are read",
-                content.length,
-                files::MAX_SCENE_BYTES
-            ));
-        }
+    /// Reads a file of at most `limit` bytes, unpacked, as UTF-8; what is none becomes `\u{fffd}`, which no keyword has. The error is half a sentence.
+    pub fn read(path: &Path, limit: Limit) -> Result<Self, String> {
+        let content = files::open(path, limit, limit)?;
         if let Some(text) = Sieve::of(content)? {
             return Ok(text);
         }
-        let bytes = files::unpacked(files::read(path, files::MAX_SCENE_BYTES)?, files::MAX_SCENE_BYTES)?;
+        let bytes = files::unpacked(files::read(path, limit)?, limit)?;
         let text = String::from_utf8(bytes);
         Ok(Self::of(text.unwrap_or_else(|e| String::from_utf8_lossy(e.as_bytes()).into_owned())))
     }
