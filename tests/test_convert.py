@@ -192,6 +192,20 @@ def test_further_texture_coordinates_come_back(tmp_path: Path) -> None:
     assert abs(images[0] - images[1]).mean() < 0.03 * images[0].mean()
 
 
+def test_mirrors_of_pbrt_come_back_from_gltf(tmp_path: Path) -> None:
+    """pbrt's views are mirrors of ours, unless they are scaled by -1; what is seen is not symmetric."""
+    source, out = tmp_path / "in.pbrt", tmp_path / "out.gltf"
+    lights = 'LightSource "point" "point3 from" [ 3 5 4 ] "rgb I" [ 60 50 40 ]'
+    shapes = 'Shape "sphere" "float radius" 0.7 Translate 1.5 0 0 Shape "sphere" "float radius" 0.3'
+    material = 'Material "diffuse" "rgb reflectance" [ 0.7 0.5 0.3 ]'
+    for scale in ["", "Scale -1 1 1"]:
+        view = f'{scale} LookAt 3 4 5 0 0 0 0 1 0 Camera "perspective" "float fov" 30'
+        film = 'Film "rgb" "integer xresolution" 48 "integer yresolution" 32 PixelFilter "gaussian"'
+        source.write_text(f"{film} {view} WorldBegin {lights} {material} {shapes}")
+        converted(source, out, overwrite=True)
+        assert differs(source, out, 2, 0.02) is None
+
+
 def test_a_room_in_gltf_follows_the_rules_of_the_format(cornell_path: Path, tmp_path: Path) -> None:
     """What the specification asks of accessors, views and chunks, for want of its validator."""
     for name in ["room.gltf", "room.glb"]:

@@ -23,10 +23,16 @@ pub struct AlbedoTable {
 }
 
 impl AlbedoTable {
-    /// From the fraction at a cosine, which is brought into [0, 1].
-    pub fn new(at_cosine: impl Fn(f32) -> f32) -> Self {
+    /// The cosines that tables ask for, in this order.
+    pub(crate) fn cosines() -> [f32; NODES] {
         let x = |i: usize| i as f32 / (NODES - 1) as f32;
-        let values: [f32; NODES] = array::from_fn(|i| at_cosine((x(i) * x(i)).max(1e-6)).clamp(0.0, 1.0));
+        array::from_fn(|i| (x(i) * x(i)).max(1e-6))
+    }
+
+    /// From the fraction at a cosine, which is brought into [0, 1].
+    pub fn new(at_cosine: impl FnMut(f32) -> f32) -> Self {
+        let x = |i: usize| i as f32 / (NODES - 1) as f32;
+        let values: [f32; NODES] = Self::cosines().map(at_cosine).map(|value| value.clamp(0.0, 1.0));
         // 2 ∫ E μ dμ = 4 ∫ E x³ dx with μ = x²; E = a + b x in each segment.
         let segment = |i: usize| {
             let (x0, x1) = (f64::from(x(i)), f64::from(x(i + 1)));

@@ -9,7 +9,7 @@ use crate::conductor::Metal;
 use crate::interface::{dielectric, reflect, reflect_about};
 use crate::layer_walk::{BOUNCES, leaves_after};
 use crate::microfacet::Facet;
-use crate::rough_coat::mean_where_it_jumps;
+use crate::rough_coat::{lattice_of_normals, mean_where_it_jumps, seen_from};
 use crate::{Bsdf, BsdfSample, Lobes, Microfacet, MicrofacetKind, Rgb, RoughConductor};
 
 /// What is the same at every point of a coated metal; made once per material.
@@ -90,8 +90,15 @@ impl CoatedConductorTables {
             leaves[times..].fill(0.0);
             leaves
         };
-        let once = AlbedoTable::new(|cos| bounces(cos)[0]);
-        let wide = AlbedoTable::new(|cos| 1.0 - bounces(cos)[1..].iter().sum::<f32>());
+        // Both tables from the same walks.
+        let mut more = Vec::new();
+        let once = AlbedoTable::new(|cos| {
+            let leaves = bounces(cos);
+            more.push(leaves[1..].iter().sum::<f32>());
+            leaves[0]
+        });
+        let mut more = more.into_iter();
+        let wide = AlbedoTable::new(|_| 1.0 - more.next().unwrap_or(0.0));
         // Of diffuse light, by the midpoint rule in cos².
         let mut shares = [0.0; BOUNCES - 1];
         for i in 0..16 {
@@ -101,23 +108,23 @@ impl CoatedConductorTables {
         let sum = shares.iter().sum::<f32>().max(f32::MIN_POSITIVE);
         let colors = Colors::Shares(shares.map(|share| share / sum));
         // Symmetric factors for which the metal's lobe, seen through the coat, holds what the walks found: p(μ) ∫ f p = once(μ).
-        let seen = |passes: &AlbedoTable, cos: f32| {
-            mean_where_it_jumps(&base, dielectric(cos, eta).cos_t, |wo, m| {
-                let wi = reflect_about(wo, m);
-                match leave(wi, eta) {
-                    Some(out) if wi.z > 0.0 => base.g2_over_g1(wo, wi) * passes.at(out.z),
-                    _ => 0.0,
-                }
-            })
+        let seen = AlbedoTable::cosines().map(|cos| seen_through(&base, eta, cos));
+        let seen = |passes: &AlbedoTable, node: usize| -> f32 {
+            seen[node].iter().map(|&(fraction, cos)| fraction * passes.at(cos)).sum()
         };
         let mut passes = AlbedoTable::new(|cos| once.at(cos).sqrt());
         for _ in 0..2 {
+            let mut node = 0..;
             passes = AlbedoTable::new(|cos| {
                 let p = passes.at(cos);
-                p * (once.at(cos) / (p * seen(&passes, cos)).max(f32::MIN_POSITIVE)).sqrt()
+                let now = p * node.next().map_or(0.0, |node| seen(&passes, node));
+                p * (once.at(cos) / now.max(f32::MIN_POSITIVE)).sqrt()
             });
         }
-        let single = AlbedoTable::new(|cos| reflected.at(cos) + passes.at(cos) * seen(&passes, cos));
+        let mut node = 0..;
+        let single = AlbedoTable::new(|cos| {
+            reflected.at(cos) + passes.at(cos) * node.next().map_or(0.0, |node| seen(&passes, node))
+        });
         Self { coat, eta, base, reflected, passes, single, wide, colors }
     }
 
@@ -130,6 +137,19 @@ impl CoatedConductorTables {
             }
         }
     }
+}
+
+/// Of light from outside that a clear coat bends as a smooth interface does, where a white metal reflects it out again:
+/// fractions, and the cosines outside at which they leave.
+fn seen_through(base: &Microfacet, eta: f32, cos: f32) -> Vec<(f32, f32)> {
+    let wo = seen_from(dielectric(cos, eta).cos_t);
+    lattice_of_normals(base, wo, [1597, 2584])
+        .filter_map(|(weight, m)| {
+            let wi = reflect_about(wo, m);
+            let out = leave(wi, eta).filter(|_| wi.z > 0.0)?;
+            Some((weight as f32 * base.g2_over_g1(wo, wi), out.z))
+        })
+        .collect()
 }
 
 /// The roughness of a metal seen through a rough coat of index `eta`: slopes add up. Light that passes a facet tilted by θ is

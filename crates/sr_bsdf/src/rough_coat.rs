@@ -165,18 +165,26 @@ pub(crate) fn mean_over_visible_normals(d: &Microfacet, cos: f32, f: impl Fn(Vec
 /// The same where `f` jumps, so that a grid would be a thousandth off and more: at a Fibonacci lattice of 17711 points
 /// (Zaremba 1966), whose rows are not along any axis.
 pub(crate) fn mean_where_it_jumps(d: &Microfacet, cos: f32, f: impl Fn(Vec3, Vec3) -> f32) -> f32 {
-    const POINTS: u32 = 17_711;
-    const TURN: u32 = 10_946;
     let wo = seen_from(cos);
-    let shared = |i: u32| at_tails((i as f32 + 0.5) / POINTS as f32);
-    let (mut sum, mut total) = (0.0, 0.0);
-    for i in 0..POINTS {
-        let ((u, along), (v, across)) = (shared(i), shared(i * TURN % POINTS));
-        let weight = f64::from(along * across);
-        sum += weight * f64::from(f(wo, d.sample_visible(wo, Vec2::new(u, v))));
-        total += weight;
-    }
-    (sum / total) as f32
+    lattice_of_normals(d, wo, [10_946, 17_711]).map(|(weight, m)| weight * f64::from(f(wo, m))).sum::<f64>()
+        as f32
+}
+
+/// Normals that `wo` sees, and their weights, which add up to 1: a Fibonacci lattice of `points`, of which the one before in
+/// the sequence is `turn`.
+pub(crate) fn lattice_of_normals(
+    d: &Microfacet,
+    wo: Vec3,
+    [turn, points]: [u32; 2],
+) -> impl Iterator<Item = (f64, Vec3)> {
+    let shared = move |i: u32| at_tails((i as f32 + 0.5) / points as f32);
+    // u (1 − u) has the mean 1/6 along either axis.
+    let total = f64::from(points) / 36.0;
+    (0..points).map(move |i| {
+        let at = (u64::from(i) * u64::from(turn) % u64::from(points)) as u32;
+        let ((u, along), (v, across)) = (shared(i), shared(at));
+        (f64::from(along * across) / total, d.sample_visible(wo, Vec2::new(u, v)))
+    })
 }
 
 /// Of diffuse light from inside, how much an interface of roughness `alpha` reflects in one bounce, 2 ∫ R(μ) μ dμ, to 10⁻³: by
@@ -215,7 +223,7 @@ pub fn rough_internal_reflectance(kind: MicrofacetKind, alpha: f32, eta: f32, de
     (sum / total) as f32
 }
 
-fn seen_from(cos: f32) -> Vec3 {
+pub(crate) fn seen_from(cos: f32) -> Vec3 {
     Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos)
 }
 

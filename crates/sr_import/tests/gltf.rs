@@ -56,6 +56,15 @@ const CAMERA: &str = r#", "cameras": [{"type": "perspective", "perspective": {"y
         {"type": "spot", "spot": {"innerConeAngle": 0.2, "outerConeAngle": 0.4}}]}}"#;
 
 #[test]
+fn other_versions_are_refused() {
+    for (version, is_read) in [("2.0", true), ("2.1", true), ("1.0", false), ("3.0", false)] {
+        let (scene, diagnostics) = read(&square("", "", "").replace("2.0", version));
+        assert_eq!(scene.is_some(), is_read, "{version}");
+        assert!(is_read || codes(&diagnostics) == ["gltf::version"], "{version}: {:?}", codes(&diagnostics));
+    }
+}
+
+#[test]
 fn a_strip_with_a_default_camera_and_light() {
     let (scene, diagnostics) = read(&square("", r#", "translation": [0, 0, 2], "scale": [-2, 1, 1]"#, ""));
     assert_eq!(codes(&diagnostics), ["scene::no-light", "scene::no-camera"]);

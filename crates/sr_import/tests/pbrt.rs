@@ -226,6 +226,30 @@ fn parts_of_quadrics_are_triangles() {
     assert_eq!(codes("Shape \"sphere\" \"float radius\" -1 \"float zmin\" 0.5").len(), 1);
 }
 
+/// The first thousand or so are fine, the next ones coarse, and then they are whole.
+#[test]
+fn many_parts_of_quadrics_become_coarse() {
+    let s = world(&"Shape \"sphere\" \"float phimax\" 350 ".repeat(200));
+    let triangles = |shape: usize| match &s.shapes[shape].geometry {
+        Geometry::Mesh(mesh) => mesh.triangles.len(),
+        other => panic!("{other:?}"),
+    };
+    assert!(triangles(0) > 15_000 && triangles(199) < 1_100, "{}, {}", triangles(0), triangles(199));
+}
+
+#[test]
+fn coats_that_cannot_be_are_said() {
+    for text in ["\"float eta\" 0.5", "\"float thickness\" -5", "\"integer maxdepth\" 0"] {
+        assert_eq!(codes(&format!("Material \"coateddiffuse\" {text}")), ["pbrt::bad-value"], "{text}");
+    }
+}
+
+#[test]
+fn files_may_begin_with_a_mark() {
+    let (scene, diagnostics) = read("\u{feff}Camera \"perspective\" WorldBegin Shape \"sphere\"");
+    assert!(diagnostics.list.is_empty() && scene.is_some_and(|s| s.shapes.len() == 1));
+}
+
 #[test]
 fn objects_are_groups_and_may_not_emit() {
     let s = world(

@@ -30,6 +30,8 @@ struct Writer<'a> {
     buffer: Buffer,
     extensions: BTreeSet<&'static str>,
     nodes: Vec<Json>,
+    /// Does the camera mirror what it sees, as pbrt's do? Then all but the camera, which is the first node, is mirrored.
+    is_mirrored: bool,
     meshes: Vec<Json>,
     materials: Vec<Json>,
     textures: Vec<Json>,
@@ -75,6 +77,7 @@ pub fn export(scene: &SceneDesc, name: &str, is_binary: bool) -> Export {
         buffer: Buffer::default(),
         extensions: BTreeSet::new(),
         nodes: Vec::new(),
+        is_mirrored: scene.camera.world_from_camera.determinant() < 0.0,
         meshes: Vec::new(),
         materials: Vec::new(),
         textures: Vec::new(),
@@ -94,6 +97,9 @@ pub fn export(scene: &SceneDesc, name: &str, is_binary: bool) -> Export {
     writer.finish(name)
 }
 
+/// What a scene is scaled by that only a mirror shows right: glTF's cameras cannot mirror.
+const MIRROR: glam::Vec3 = glam::Vec3::new(-1.0, 1.0, 1.0);
+
 impl Writer<'_> {
     fn finish(mut self, name: &str) -> Export {
         let bytes = std::mem::take(&mut self.buffer.bytes);
@@ -110,7 +116,13 @@ impl Writer<'_> {
             }
         };
         add("extensionsUsed", names(&self.extensions));
-        let roots: Vec<Json> = (0..self.nodes.len()).map(Json::Integer).collect();
+        let mut roots: Vec<Json> = (0..self.nodes.len()).map(Json::Integer).collect();
+        if self.is_mirrored && roots.len() > 1 {
+            let scale = ("scale", Json::numbers(&MIRROR.to_array()));
+            let all = ("children", Json::List(roots.split_off(1)));
+            roots.push(Json::Integer(self.nodes.len()));
+            self.nodes.push(Json::Object(vec![scale, all]));
+        }
         let mut scene = Vec::new();
         if !roots.is_empty() {
             scene.push(("nodes", Json::List(roots)));

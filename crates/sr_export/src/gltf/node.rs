@@ -6,7 +6,7 @@ use glam::{Mat4, Quat, Vec3};
 use sr_scene::{LightDesc, MeshDesc, Projection, Rgb, ShapeDesc, Span, SpotFalloff, TextureDesc};
 
 use super::json::Json;
-use super::{Attributes, Writer, emission_key};
+use super::{Attributes, MIRROR, Writer, emission_key};
 use crate::{surfaces, tessellate};
 
 impl Writer<'_> {
@@ -21,7 +21,10 @@ impl Writer<'_> {
             list.push(("znear", Json::Number(camera.near_clip)));
             list.push(("zfar", Json::Number(camera.far_clip)));
         };
-        let m = camera.world_from_camera;
+        let m = match self.is_mirrored {
+            true => Mat4::from_scale(MIRROR) * camera.world_from_camera,
+            false => camera.world_from_camera,
+        };
         let (kind, lens) = match camera.projection {
             Projection::Perspective { fov_axis, fov, principal_point_offset: offset, lens } => {
                 if offset.x != 0.0 || offset.y != 0.0 {

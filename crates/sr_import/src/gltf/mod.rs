@@ -35,6 +35,13 @@ use crate::LoadOptions;
 use crate::assembly::Assembly;
 use document::Document;
 
+/// The version that a file needs, if it is not 2; one that says none may be anything.
+fn other_version(root: &json::Value) -> Option<&str> {
+    let asset = root.get("asset")?;
+    let version = asset.get("minVersion").or(asset.get("version"))?.text()?;
+    (version != "2" && !version.starts_with("2.")).then_some(version)
+}
+
 /// Loads a scene from the bytes of a file. `name` is what messages call it.
 pub fn load(
     name: &str,
@@ -64,6 +71,11 @@ pub fn load(
     };
     drop(container.json);
     let span = Span { source, bytes: 0..0 };
+    if let Some(version) = other_version(&root) {
+        let message = format!("it is of version {version} of glTF; version 2 is read");
+        d.push(Diagnostic::error("gltf::version", &span, message));
+        return None;
+    }
     let mut document = Document::new(&root, container.binary, Assembly::new(directories, limits, d));
     document.out.environment.clone_from(&options.environment);
     document.choose_variant(options.variant.as_deref(), &span);

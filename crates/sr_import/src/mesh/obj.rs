@@ -60,6 +60,8 @@ pub fn parse_covered(bytes: &[u8], limit: Limit) -> Result<Covered, String> {
 
 fn read(bytes: &[u8], fans: &mut Fans, limit: Limit) -> Result<Reader, String> {
     let mut reader = Reader::default();
+    // Some editors begin a file with a mark.
+    let bytes = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes);
     for (number, line) in bytes.split(|&b| b == b'\n').enumerate() {
         // Comments and names may be in any encoding; what is read is ASCII.
         let line = String::from_utf8_lossy(line);

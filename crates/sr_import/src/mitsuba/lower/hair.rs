@@ -34,6 +34,11 @@ impl<'a> Lowering<'a, '_> {
                 .d
                 .push(Diagnostic::warning("mitsuba::conflict", &props.node.span, message).consequence(used));
         }
+        if scale != 1.0 && !has_sigma_a {
+            let message = format!("\"scale\" of {} belongs to \"sigma_a\"", props.node.title());
+            let diagnostic = Diagnostic::warning("mitsuba::conflict", &props.node.span, message);
+            self.out.d.push(diagnostic.consequence("it is ignored"));
+        }
         if let Some(sigma_a) = self.color_if_given(props, "sigma_a", Role::Factor) {
             props.ignore(&["color", "eumelanin", "pheomelanin"]);
             return HairAbsorption::Coefficient(match sigma_a {

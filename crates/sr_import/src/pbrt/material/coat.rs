@@ -59,22 +59,43 @@ impl Layer {
 }
 
 impl Reader<'_> {
+    /// The index of a coat, at least 1.
+    pub(super) fn coat_eta(&mut self, params: &mut Params, name: &'static str) -> f32 {
+        let eta = self.eta(params, name, 1.5);
+        if eta < 1.0 {
+            let message = format!("an index of {eta} of a coat is below 1");
+            self.warn("pbrt::bad-value", &params.span, message, "1 is used");
+        }
+        eta.max(1.0)
+    }
+
     /// The coat that a material describes.
     pub(super) fn layer(&mut self, params: &mut Params, eta: f32) -> Layer {
         let depth = match self.float_or_texture(params, "thickness") {
             None => 0.01,
-            Some(FloatTexture::Constant(thickness)) => thickness.max(0.0),
+            Some(FloatTexture::Constant(thickness)) => {
+                if thickness < 0.0 {
+                    let message = format!("a \"thickness\" of {thickness} of {}", params.title);
+                    self.warn("pbrt::bad-value", &params.span, message, "0 is used");
+                }
+                thickness.max(0.0)
+            }
             Some(_) => {
                 let message = format!("\"thickness\" of {} cannot be a texture", params.title);
                 self.warn("pbrt::texture-not-possible", &params.span, message, "0.01 is used");
                 0.01
             }
         };
-        let meetings = params.integer("maxdepth").unwrap_or(10).clamp(1, 1000);
+        let passages = params.integer("maxdepth").unwrap_or(10);
+        if passages < 1 {
+            let message = format!("a \"maxdepth\" of {passages} of {}", params.title);
+            self.warn("pbrt::bad-value", &params.span, message, "light crosses the coat and comes back once");
+        }
+        let meetings = passages.clamp(1, 1000);
         params.ignore(&["nsamples"]);
         params.unsupported(&["albedo", "g"], "nothing scatters inside the coat", &mut self.notes());
         params.unsupported(&["twosided"], "both sides are coated", &mut self.notes());
-        Layer { eta: eta.max(1.0), depth, meetings: (meetings + 1) / 2 }
+        Layer { eta, depth, meetings: (meetings + 1) / 2 }
     }
 
     /// What the base reflects below a clear coat of roughness `alpha`; `None` is smooth.

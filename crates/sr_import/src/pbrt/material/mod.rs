@@ -160,7 +160,7 @@ impl Reader<'_> {
 
     fn coated_diffuse(&mut self, params: &mut Params) -> MaterialDesc {
         let alpha = self.alpha(params, ["uroughness", "vroughness", "roughness"], 0.0);
-        let eta = self.eta(params, "eta", 1.5);
+        let eta = self.coat_eta(params, "eta");
         let layer = self.layer(params, eta);
         let alpha = self.constant_alpha(alpha, params);
         let diffuse_reflectance = self.base_albedo(params, layer, alpha);
@@ -187,18 +187,13 @@ impl Reader<'_> {
         let coat = self.alpha(params, coat, 0.0);
         let metal = ["conductor.uroughness", "conductor.vroughness", "conductor.roughness"];
         let metal = self.alpha(params, metal, 0.0);
-        let eta = self.eta(params, "interface.eta", 1.5);
-        if eta < 1.0 {
-            let message = format!("an index of {eta} of a coat is below 1");
-            self.warn("pbrt::bad-value", &params.span, message, "1 is used");
-        }
+        let eta = self.coat_eta(params, "interface.eta");
         let layer = self.layer(params, eta);
-        let (eta_k, specular_reflectance) =
-            self.complex_index(params, ["conductor.eta", "conductor.k"], eta.max(1.0));
+        let (eta_k, specular_reflectance) = self.complex_index(params, ["conductor.eta", "conductor.k"], eta);
         MaterialDesc::CoatedConductor {
             kind: MicrofacetKind::GgxCorrelated,
             coat_alpha: self.constant_alpha(coat, params).unwrap_or(0.0),
-            eta: eta.max(1.0),
+            eta,
             alpha: self.constant_alpha(metal, params).unwrap_or(SMOOTH),
             eta_k,
             specular_reflectance: self.scaled(specular_reflectance, layer.transmittance(), &params.span),

@@ -12,8 +12,10 @@ use crate::assembly::MeshSource;
 
 /// Columns of a whole turn.
 const COLUMNS: f32 = 128.0;
+/// Triangles of all such shapes of a file after which a quarter of the columns and rows has to do.
+const MANY_TRIANGLES: usize = 1 << 20;
 /// Triangles of all such shapes of a file: more are whole, and round.
-const MOST_TRIANGLES: usize = 1 << 25;
+const MOST_TRIANGLES: usize = 1 << 22;
 
 /// A point of a profile: distance from the axis and height, their normal, and v.
 #[derive(Clone, Copy, Debug)]
@@ -31,7 +33,9 @@ impl Reader<'_> {
         profile: &[ProfilePoint],
         phi_max: f32,
     ) -> Option<Vec<Form>> {
-        let columns = (COLUMNS * phi_max / TAU).ceil().max(4.0) as usize;
+        let coarser = if self.swept_triangles < MANY_TRIANGLES { 1 } else { 4 };
+        let columns = (COLUMNS / coarser as f32 * phi_max / TAU).ceil().max(4.0) as usize;
+        let profile = &thinned(profile, coarser);
         let count = 2 * columns * (profile.len() - 1);
         self.swept_triangles += count;
         if self.swept_triangles > MOST_TRIANGLES {
@@ -44,6 +48,12 @@ impl Reader<'_> {
         let source = MeshSource::Memory(Arc::new(mesh(profile, phi_max, columns)));
         Some(vec![Form::of_mesh(source, self.placement(), None)])
     }
+}
+
+/// Every so many of the points, and the last one.
+fn thinned(profile: &[ProfilePoint], step: usize) -> Vec<ProfilePoint> {
+    let last = profile.len() - 1;
+    (0..last).step_by(step).chain([last]).map(|i| profile[i]).collect()
 }
 
 fn mesh(profile: &[ProfilePoint], phi_max: f32, columns: usize) -> MeshDesc {

@@ -28,6 +28,8 @@ impl<'t> Scanner<'t> {
         while let Some(&byte) = bytes.get(self.at) {
             match byte {
                 b' ' | b'\t' | b'\n' | b'\r' => self.at += 1,
+                // The mark that some editors begin a file with.
+                0xEF if self.at == 0 && self.text.starts_with('\u{feff}') => self.at = 3,
                 b'#' => {
                     let rest = &bytes[self.at..];
                     self.at += rest.iter().position(|b| *b == b'\n').unwrap_or(rest.len());
