@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::sheared::Triangles;
 use super::simd::Eight;
-use super::{NodeRef, PrimRef, WIDE, pages};
+use super::{NodeRef, PrimRef, WIDTH, pages};
 use crate::ShapeId;
 
 /// Coordinates of a triangle.
@@ -20,7 +20,7 @@ const TASK: usize = 1 << 10;
 #[derive(Debug)]
 pub(super) struct Leaves {
     /// Leaf after leaf: by axis, then vertex, then triangle. The last leaf is followed by what completes its last row to
-    /// sixteen lanes.
+    /// eight lanes.
     vertices: Vec<f32>,
     /// Shapes, and triangles within their meshes.
     ids: Vec<[u32; 2]>,
@@ -28,7 +28,7 @@ pub(super) struct Leaves {
 
 impl Leaves {
     pub fn new() -> Self {
-        Self { vertices: vec![f32::NAN; SIZE + WIDE - 1], ids: vec![[0; 2]] }
+        Self { vertices: vec![f32::NAN; SIZE + WIDTH - 1], ids: vec![[0; 2]] }
     }
 
     /// Triangles in leaves.
@@ -45,10 +45,10 @@ impl Leaves {
     ) {
         let count: usize = leaves.iter().map(Range::len).sum();
         self.vertices.truncate(SIZE * self.ids.len());
-        pages::reserve(&mut self.vertices, SIZE * count + WIDE - 1);
+        pages::reserve(&mut self.vertices, SIZE * count + WIDTH - 1);
         pages::reserve(&mut self.ids, count);
         let (first_vertex, first_id) = (self.vertices.len(), self.ids.len());
-        self.vertices.resize(first_vertex + SIZE * count + WIDE - 1, f32::NAN);
+        self.vertices.resize(first_vertex + SIZE * count + WIDTH - 1, f32::NAN);
         self.ids.resize(first_id + count, [0; 2]);
         let (mut vertices, mut ids) = (&mut self.vertices[first_vertex..], &mut self.ids[first_id..]);
         let mut tasks = Vec::new();
@@ -122,32 +122,20 @@ fn write(
 /// Up to [`LEAF`] triangles.
 #[derive(Clone, Copy)]
 pub(super) struct Leaf<'a> {
-    /// Theirs, and at least as many more as complete the last row to sixteen lanes.
+    /// Theirs, and at least as many more as complete the last row to eight lanes.
     vertices: &'a [f32],
     pub count: usize,
     /// The place of the first.
     pub first: usize,
 }
 
-impl Leaf<'_> {
-    /// One coordinate of the first vertices, the second and the third of all triangles, and what follows them: sixteen
-    /// numbers.
-    ///
-    /// # Safety
-    /// `axis` is below 3.
-    #[inline(always)]
-    pub unsafe fn axis(&self, axis: usize) -> &[f32; WIDE] {
-        // SAFETY: by the caller's promise there is such an axis, and as many numbers are within `vertices`.
-        unsafe { &*self.vertices.as_ptr().add(3 * axis * self.count).cast() }
-    }
-}
-
 impl<S: Eight> Triangles<S> for Leaf<'_> {
     #[inline(always)]
     unsafe fn coordinate(&self, simd: S, vertex: usize, axis: usize) -> S::F {
-        let row = (3 * axis + vertex) * self.count;
         // SAFETY: by the caller's promise there is such a row, and its eight lanes are within `vertices`.
-        simd.load(unsafe { &*self.vertices.as_ptr().add(row).cast() })
+        simd.load(unsafe {
+            &*self.vertices.as_ptr().add(axis * (3 * self.count)).add(vertex * self.count).cast()
+        })
     }
 
     fn vertices(&self, lane: usize) -> [Vec3; 3] {

@@ -51,9 +51,6 @@ pub(crate) const WIDTH: usize = 8;
 /// The most triangles of a leaf.
 const LEAF: usize = 8;
 
-/// The most triangles of a leaf that is met with a lane for each vertex, where there are sixteen.
-const NARROW: usize = 4;
-
 /// Triangles of a block that is scanned.
 const WIDE: usize = 16;
 

@@ -21,12 +21,8 @@ pub(crate) mod kind {
     pub const NODE: usize = 0;
     /// An other primitive, [`super::NodeRef::DONE`] or [`super::NodeRef::BACK`].
     pub const OTHER: usize = 1;
-    /// A leaf of up to [`super::super::NARROW`] triangles.
-    pub const NARROW: usize = 2;
-    /// A leaf of more.
-    pub const FULL: usize = 3;
-    /// How many kinds there are.
-    pub const COUNT: usize = 4;
+    /// A leaf.
+    pub const LEAF: usize = 2;
 }
 
 impl NodeRef {
@@ -74,10 +70,17 @@ impl NodeRef {
         self.0 >= Self::LEAF
     }
 
+    #[inline(always)]
+    pub fn is_other(self) -> bool {
+        self.kind() == kind::OTHER
+    }
+
     /// What to do with it.
     #[inline(always)]
     pub fn kind(self) -> usize {
-        (self.0 >> 30) as usize
+        let bits = (self.0 >> 30) as usize;
+        // 3 is a leaf as well. Without a branch.
+        bits - (bits & bits >> 1)
     }
 
     /// Of a node or an other primitive.

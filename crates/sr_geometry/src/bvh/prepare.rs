@@ -1,79 +1,120 @@
 //! Making rays ready to walk, several at a time: a lane each.
 
+use std::cell::Cell;
+
 use super::sheared::Sheared;
 use super::slabs::Line;
 use super::traverse::meets_nothing;
-use crate::{BATCH, Bounds3, Rays};
+use crate::{BATCH, Bounds3, Ray, Rays};
 
 /// Rays that are made ready at a time.
 pub(super) const CHUNK: usize = 16;
 
-/// [`Sheared`] and [`Line`] of several rays, by component.
+/// A number of each ray. A little longer than needed: all that belongs to a ray would else be in the same few sets of a
+/// cache.
+type Row<T> = [T; BATCH + CHUNK];
+
+/// [`Sheared`] and [`Line`] of the rays of a batch, by component.
+#[repr(C, align(64))]
 pub(super) struct Prepared {
-    longest: [u32; CHUNK],
-    negative: [u32; CHUNK],
-    sheared_origin: [[f32; CHUNK]; 3],
-    shear: [[f32; CHUNK]; 3],
-    near: [f32; CHUNK],
-    origin_near: [[f32; CHUNK]; 3],
-    origin_far: [[f32; CHUNK]; 3],
-    inverse: [[f32; CHUNK]; 3],
-    inverse_far: [[f32; CHUNK]; 3],
-    t_max: [f32; CHUNK],
+    flip: Row<u32>,
+    near_rows: [Row<u32>; 3],
+    origin_near: [Row<f32>; 3],
+    origin_far: [Row<f32>; 3],
+    inverse: [Row<f32>; 3],
+    inverse_far: [Row<f32>; 3],
+    longest: Row<u32>,
+    sheared_origin: [Row<f32>; 3],
+    shear: [Row<f32>; 3],
+    near: Row<f32>,
     /// Does a ray meet nothing? See [`super::traverse::meets_nothing`].
-    nothing: [u32; CHUNK],
+    nothing: Row<u32>,
+}
+
+thread_local! {
+    /// Memory for a batch, which is not cleared between batches.
+    static SPARE: Cell<Option<Box<Prepared>>> = const { Cell::new(None) };
 }
 
 impl Prepared {
-    pub const NONE: Self = {
-        let (one, three) = ([0.0; CHUNK], [[0.0; CHUNK]; 3]);
+    const NONE: Self = {
+        let (numbers, bits) = ([0.0; BATCH + CHUNK], [0; BATCH + CHUNK]);
         Self {
-            longest: [0; CHUNK],
-            negative: [0; CHUNK],
-            sheared_origin: three,
-            shear: three,
-            near: one,
-            origin_near: three,
-            origin_far: three,
-            inverse: three,
-            inverse_far: three,
-            t_max: one,
-            nothing: [1; CHUNK],
+            flip: bits,
+            near_rows: [bits; 3],
+            origin_near: [numbers; 3],
+            origin_far: [numbers; 3],
+            inverse: [numbers; 3],
+            inverse_far: [numbers; 3],
+            longest: bits,
+            sheared_origin: [numbers; 3],
+            shear: [numbers; 3],
+            near: numbers,
+            nothing: bits,
         }
     };
 
-    /// Prepares the rays from `first` on, of which there are [`CHUNK`], among boxes within `bounds`.
+    /// Memory for a batch, with leftovers of another one.
+    pub fn take_spare() -> Box<Self> {
+        SPARE.take().unwrap_or_else(|| Box::new(Self::NONE))
+    }
+
+    /// Gives it back.
+    pub fn keep_spare(self: Box<Self>) {
+        SPARE.set(Some(self));
+    }
+
+    /// Prepares the [`CHUNK`] rays from `first` on, among boxes within `bounds`.
     #[inline(always)]
     pub fn prepare(&mut self, rays: &Rays, first: usize, bounds: &Bounds3) {
         let first = first.min(BATCH - CHUNK);
-        for i in 0..CHUNK {
-            let ray = rays.get(first + i);
-            let sheared = Sheared::new(ray.origin, ray.direction);
-            let line = Line::new(ray.origin, ray.direction, ray.t_max, bounds);
-            self.longest[i] = sheared.longest;
-            self.negative[i] = line.negative;
-            self.near[i] = sheared.near;
-            self.t_max[i] = ray.t_max;
+        for i in first..first + CHUNK {
+            let ray = rays.get(i);
+            self.set(i, &ray, bounds);
             self.nothing[i] = u32::from(meets_nothing(&ray));
-            for axis in 0..3 {
-                self.sheared_origin[axis][i] = sheared.origin[axis];
-                self.shear[axis][i] = sheared.shear[axis];
-                self.origin_near[axis][i] = line.origin_near[axis];
-                self.origin_far[axis][i] = line.origin_far[axis];
-                self.inverse[axis][i] = line.inverse[axis];
-                self.inverse_far[axis][i] = line.inverse_far[axis];
-            }
+        }
+    }
+
+    /// Prepares a ray.
+    #[inline(always)]
+    pub fn set(&mut self, i: usize, ray: &Ray, bounds: &Bounds3) {
+        let line = Line::new(ray.origin, ray.direction, bounds);
+        let sheared = Sheared::new(ray.origin, ray.direction);
+        self.flip[i] = line.flip;
+        self.longest[i] = sheared.longest;
+        self.near[i] = sheared.near;
+        for axis in 0..3 {
+            self.near_rows[axis][i] = line.near[axis];
+            self.origin_near[axis][i] = line.origin_near[axis];
+            self.origin_far[axis][i] = line.origin_far[axis];
+            self.inverse[axis][i] = line.inverse[axis];
+            self.inverse_far[axis][i] = line.inverse_far[axis];
+            self.sheared_origin[axis][i] = sheared.origin[axis];
+            self.shear[axis][i] = sheared.shear[axis];
         }
     }
 
     #[inline(always)]
     pub fn meets_nothing(&self, i: usize) -> bool {
-        self.nothing[i % CHUNK] != 0
+        self.nothing[i % BATCH] != 0
+    }
+
+    #[inline(always)]
+    pub fn line(&self, i: usize) -> Line {
+        let i = i % BATCH;
+        Line {
+            flip: self.flip[i],
+            near: lane(&self.near_rows, i),
+            origin_near: lane(&self.origin_near, i),
+            origin_far: lane(&self.origin_far, i),
+            inverse: lane(&self.inverse, i),
+            inverse_far: lane(&self.inverse_far, i),
+        }
     }
 
     #[inline(always)]
     pub fn sheared(&self, i: usize) -> Sheared {
-        let i = i % CHUNK;
+        let i = i % BATCH;
         Sheared {
             longest: self.longest[i],
             origin: lane(&self.sheared_origin, i),
@@ -81,22 +122,9 @@ impl Prepared {
             near: self.near[i],
         }
     }
-
-    #[inline(always)]
-    pub fn line(&self, i: usize) -> Line {
-        let i = i % CHUNK;
-        Line {
-            negative: self.negative[i],
-            origin_near: lane(&self.origin_near, i),
-            origin_far: lane(&self.origin_far, i),
-            inverse: lane(&self.inverse, i),
-            inverse_far: lane(&self.inverse_far, i),
-            t_max: self.t_max[i],
-        }
-    }
 }
 
 #[inline(always)]
-fn lane(v: &[[f32; CHUNK]; 3], i: usize) -> [f32; 3] {
+fn lane<T: Copy>(v: &[Row<T>; 3], i: usize) -> [T; 3] {
     [v[0][i], v[1][i], v[2][i]]
 }

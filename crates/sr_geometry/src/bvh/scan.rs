@@ -86,7 +86,7 @@ fn meet_all<L: Lanes, const ANY: bool, const EXACT: bool>(
             let triangles = Part { block, part };
             let seen = sheared.project(lanes, &triangles);
             let meets = match EXACT {
-                true => sheared.meet(lanes, (ray, &triangles), &seen, found.t),
+                true => sheared.meet(lanes, &triangles, &seen, found.t, || *ray),
                 false => sheared.meet_roughly(lanes, &seen, found.t),
             };
             found.t = lanes.select(meets.hit, meets.t, found.t);

@@ -142,14 +142,15 @@ impl Sheared {
         Meets { hit: lanes.and(seen.inside, within), t, b: [b1, b2] }
     }
 
-    /// Which triangles the ray meets in (0, `t_max`).
+    /// Which triangles the ray, which is seldom asked for again, meets in (0, `t_max`).
     #[inline(always)]
     pub fn meet<L: Lanes>(
         &self,
         lanes: L,
-        (ray, triangles): (&Ray, &impl Triangles<L>),
+        triangles: &impl Triangles<L>,
         seen: &Projected<L>,
         t_max: L::F,
+        ray: impl Fn() -> Ray,
     ) -> Meets<L> {
         let meets = self.meet_roughly(lanes, seen, t_max);
         let first = lanes.min(lanes.min(seen.z[0], seen.z[1]), seen.z[2]);
@@ -162,7 +163,7 @@ impl Sheared {
         let mut hit = lanes.bits(meets.hit);
         while doubtful != 0 {
             let lane = doubtful.trailing_zeros();
-            if !is_ahead(ray, triangles.vertices(lane as usize % L::COUNT)) {
+            if !is_ahead(&ray(), triangles.vertices(lane as usize % L::COUNT)) {
                 hit &= !(1 << lane);
             }
             doubtful &= doubtful - 1;

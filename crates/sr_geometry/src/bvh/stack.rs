@@ -1,9 +1,10 @@
 //! What a walk comes back to.
 
+use std::hint::select_unpredictable;
 use std::mem::MaybeUninit;
 
 use super::simd::Walk;
-use super::{MAX_DEPTH, NodeRef, WIDTH};
+use super::{MAX_DEPTH, Node, NodeRef, WIDTH};
 
 /// [`NodeRef::DONE`] and [`NodeRef::BACK`], what every node on the way to a leaf leaves, in a tree and in one that is
 /// placed in it (in which none is placed), and what is written at a time.
@@ -13,20 +14,18 @@ const CAPACITY: usize = 2 + 2 * (WIDTH - 1) * MAX_DEPTH + 2 * WIDTH;
 ///
 /// A hit puts children out of reach. Either all of them are removed at once, or each is looked at when its turn comes.
 pub(super) struct Stack {
+    depth: usize,
     children: [MaybeUninit<NodeRef>; CAPACITY],
     enters: [MaybeUninit<f32>; CAPACITY],
-    depth: usize,
 }
 
 impl Stack {
-    /// Holds no more than a child.
+    /// Holds nothing but [`NodeRef::DONE`].
     #[inline(always)]
-    pub fn reset(&mut self, child: NodeRef) {
+    pub fn reset(&mut self) {
         self.children[0].write(NodeRef::DONE);
         self.enters[0].write(0.0);
-        self.children[1].write(child);
-        self.enters[1].write(0.0);
-        self.depth = 2;
+        self.depth = 1;
     }
 
     /// Adds a child that is always within reach.
@@ -59,6 +58,13 @@ impl Stack {
         }
     }
 
+    /// Where the child is entered that was popped last.
+    #[inline(always)]
+    pub fn entered(&self) -> f32 {
+        // SAFETY: it was written with the child, and not overwritten since.
+        unsafe { self.enters.get_unchecked(self.depth).assume_init() }
+    }
+
     /// The last children, from `depth` on.
     #[inline(always)]
     pub fn since(&self, depth: usize) -> &[NodeRef] {
@@ -87,10 +93,26 @@ impl Stack {
         self.depth += count as usize;
     }
 
+    /// Keeps what was written to the top, and takes the last of it, which is one of a node's children; or if nothing was, what
+    /// lay there. `met`: which of the node's slots, flipped by `flip`, were written.
+    ///
+    /// # Safety
+    /// As many were written as `met` has bits, of which there are at most [`WIDTH`].
+    #[inline(always)]
+    pub unsafe fn keep_and_pop(&mut self, met: u32, flip: u32, node: &Node) -> NodeRef {
+        // Not from the stack, which was just written: the processor would wait for it.
+        let nearest = (31 - (met | 1).leading_zeros()) ^ flip;
+        let new = node.children[nearest as usize % WIDTH];
+        // SAFETY: there is at least [`NodeRef::DONE`], as long as it was not popped.
+        let old = unsafe { self.children.get_unchecked(self.depth - 1).assume_init() };
+        self.depth = self.depth + met.count_ones() as usize - 1;
+        select_unpredictable(met != 0, new, old)
+    }
+
     /// Forgets all children if `met`.
     #[inline(always)]
     pub fn clear_if(&mut self, met: bool) {
-        self.depth = if met { 1 } else { self.depth };
+        self.depth = select_unpredictable(met, 1, self.depth);
     }
 
     /// Forgets the children that are entered beyond `t_max`.

@@ -6,16 +6,15 @@
 //! guess wrongly but for the ends of these loops.
 
 use std::mem::MaybeUninit;
-use std::ops::Range;
+
+use glam::Vec3;
 
 use super::node::kind;
 use super::prepare::{CHUNK, Prepared};
-use super::sheared::Sheared;
 use super::simd::Walk;
-use super::slabs::Line;
-use super::walker::Walker;
+use super::walker::{Turn, Walker};
 use super::{Bvh, Met, NodeRef};
-use crate::{Bounds3, Hit, Ray, Rays};
+use crate::{BATCH, Bounds3, Hit, NO_INSTANCE, Ray, Rays};
 
 /// Walks at a time: fewer wait, more do not fit the first-level cache.
 const AT_A_TIME: usize = 16;
@@ -31,136 +30,162 @@ pub(super) fn walk_many<S: Walk, const ANY: bool>(
     meet_other: &impl Fn(u32, &Ray) -> Met,
     mut answer: impl FnMut(usize, Option<&Hit>),
 ) {
-    let mut prepared = Prepared::NONE;
-    let mut places = Places { walkers: [const { MaybeUninit::<Walker<S, ANY>>::uninit() }; AT_A_TIME] };
-    let mut ray_of = [0; AT_A_TIME];
-    let mut lists = Lists::EMPTY;
+    let mut prepared = Prepared::take_spare();
+    let mut places = Places::<ANY>::EMPTY;
+    // Rays in the space of an instance, by walker.
+    let mut placed = [Ray::new(Vec3::ZERO, Vec3::ZERO); AT_A_TIME];
+    let mut waiting = Waiting::NOBODY;
+    let mut idle = Set::ALL;
     let mut queued = 0;
-    // Those who wait for a ray.
-    let mut idle = AT_A_TIME;
-    let mut free: [u32; AT_A_TIME] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
     loop {
-        while idle > 0 && queued < count {
+        while idle != Set::NONE && queued < count {
             if queued % CHUNK == 0 {
                 prepared.prepare(rays, queued, bounds);
             }
             if prepared.meets_nothing(queued) {
                 answer(queued, None);
-            } else {
-                idle -= 1;
-                let walker = free[idle % AT_A_TIME];
-                let (sheared, line) = (prepared.sheared(queued), prepared.line(queued));
-                places.start(simd, walker, root, (&rays.get(queued), &sheared, &line));
-                ray_of[walker as usize % AT_A_TIME] = queued;
-                lists.put(walker, root);
+            } else if let Some(i) = idle.next() {
+                places.start(i, queued, rays.t_max[queued % BATCH]);
+                waiting.put(i, root);
             }
             queued += 1;
         }
-        if idle == AT_A_TIME {
-            return;
+        if idle == Set::ALL {
+            break;
         }
-        for i in lists.take(kind::NODE) {
-            let Entry { walker, child } = lists.entries[kind::NODE][i % RING];
-            let at = places.at(walker);
-            at.visit_node(simd, bvh.node(child));
-            lists.put(walker, at.next_of_many(simd, bvh));
+        // Each makes one step.
+        let (nodes, leaves, others) =
+            (waiting.take(kind::NODE), waiting.take(kind::LEAF), waiting.take(kind::OTHER));
+        for i in nodes {
+            let walker = places.walker(i);
+            let next = walker.visit_node(simd, &prepared.line(walker.ray), bvh.node(waiting.child(i)));
+            bvh.prefetch_if_large(simd, next);
+            waiting.put(i, next);
         }
-        for i in lists.take(kind::NARROW) {
-            let Entry { walker, child } = lists.entries[kind::NARROW][i % RING];
-            let at = places.at(walker);
-            at.visit_leaf::<true, false>(simd, &bvh.leaves.leaf(child));
-            at.forget_beyond(simd);
-            lists.put(walker, at.next_of_many(simd, bvh));
+        for i in leaves {
+            let walker = places.walker(i);
+            let (sheared, leaf) = (prepared.sheared(walker.ray), bvh.leaves.leaf(waiting.child(i)));
+            let (number, instance) = (walker.ray, walker.instance);
+            let ray = || ray_in(instance, rays, number, &placed[i % AT_A_TIME]);
+            if walker.visit_leaf::<_, false>(simd, &sheared, &leaf, ray) {
+                walker.forget_beyond(simd);
+            }
+            let next = walker.stack.pop();
+            bvh.prefetch_if_large(simd, next);
+            waiting.put(i, next);
         }
-        for i in lists.take(kind::FULL) {
-            let Entry { walker, child } = lists.entries[kind::FULL][i % RING];
-            let at = places.at(walker);
-            at.visit_leaf::<false, false>(simd, &bvh.leaves.leaf(child));
-            at.forget_beyond(simd);
-            lists.put(walker, at.next_of_many(simd, bvh));
-        }
-        for i in lists.take(kind::OTHER) {
-            let Entry { walker, child } = lists.entries[kind::OTHER][i % RING];
-            let at = places.at(walker);
-            let ray = ray_of[walker as usize % AT_A_TIME];
+        for i in others {
+            let (walker, child) = (places.walker(i), waiting.child(i));
+            let number = walker.ray % BATCH;
             if child == NodeRef::DONE {
-                answer(ray, at.hit(bvh).as_ref());
-                free[idle % AT_A_TIME] = walker;
-                idle += 1;
+                answer(number, walker.hit(bvh).as_ref());
+                idle.insert(i);
                 continue;
             }
+            let mut turn = Turn::Stays;
             if child == NodeRef::BACK {
-                at.go_back(&rays.get(ray));
+                walker.go_back();
             } else {
-                at.visit_other(simd, bvh, child.index() as u32, meet_other);
-                at.forget_beyond(simd);
+                let ray = ray_in(walker.instance, rays, number, &placed[i % AT_A_TIME]);
+                turn = walker.visit_other(simd, bvh, &ray, child.index() as u32, meet_other);
+                walker.forget_beyond(simd);
             }
-            let next = at.next_after_other(simd, bounds);
-            if bvh.prefetches {
-                bvh.prefetch(simd, next);
+            let next = walker.next();
+            if let Turn::Enters(ray, bounds) = turn {
+                placed[i % AT_A_TIME] = ray;
+                prepared.set(number, &ray, &bounds);
+            } else if walker.arrives(next) {
+                prepared.set(number, &rays.get(number), bounds);
             }
-            lists.put(walker, next);
+            bvh.prefetch_if_large(simd, next);
+            waiting.put(i, next);
         }
     }
+    prepared.keep_spare();
+}
+
+/// A ray of a batch, or where it is placed in the space of an instance.
+#[inline(always)]
+fn ray_in(instance: u32, rays: &Rays, number: usize, placed: &Ray) -> Ray {
+    if instance == NO_INSTANCE { rays.get(number % BATCH) } else { *placed }
 }
 
 /// The walkers.
-struct Places<S: Walk, const ANY: bool> {
-    walkers: [MaybeUninit<Walker<S, ANY>>; AT_A_TIME],
-}
+struct Places<const ANY: bool>([MaybeUninit<Walker<ANY>>; AT_A_TIME]);
 
-impl<S: Walk, const ANY: bool> Places<S, ANY> {
+impl<const ANY: bool> Places<ANY> {
+    const EMPTY: Self = Self([const { MaybeUninit::uninit() }; AT_A_TIME]);
+
     #[inline(always)]
-    fn start(&mut self, simd: S, walker: u32, root: NodeRef, ray: (&Ray, &Sheared, &Line)) {
-        Walker::start(&mut self.walkers[walker as usize % AT_A_TIME], simd, root, ray).next();
+    fn start(&mut self, i: usize, ray: usize, t_max: f32) {
+        Walker::start(&mut self.0[i % AT_A_TIME], ray, t_max);
     }
 
     /// A walker that was started.
     #[inline(always)]
-    fn at(&mut self, walker: u32) -> &mut Walker<S, ANY> {
-        debug_assert!((walker as usize) < AT_A_TIME);
-        // SAFETY: only those who were started are in a list.
-        unsafe { self.walkers.get_unchecked_mut(walker as usize).assume_init_mut() }
+    fn walker(&mut self, i: usize) -> &mut Walker<ANY> {
+        debug_assert!(i < AT_A_TIME);
+        // SAFETY: only those who were started wait for anything.
+        unsafe { self.0.get_unchecked_mut(i).assume_init_mut() }
     }
 }
 
-/// Walkers by the kind of what they visit next, in the order in which they came.
-struct Lists {
-    entries: [[Entry; RING]; kind::COUNT],
-    /// How many were taken of each kind, and how many were put there.
-    taken: [usize; kind::COUNT],
-    put: [usize; kind::COUNT],
-}
+/// Walkers, a bit each, in ascending order.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct Set(u64);
 
-/// Entries that fit a list, which goes round.
-const RING: usize = 2 * AT_A_TIME;
-
-#[derive(Clone, Copy)]
-struct Entry {
-    walker: u32,
-    child: NodeRef,
-}
-
-impl Lists {
-    const EMPTY: Self = Self {
-        entries: [[Entry { walker: 0, child: NodeRef::DONE }; RING]; kind::COUNT],
-        taken: [0; kind::COUNT],
-        put: [0; kind::COUNT],
-    };
+impl Set {
+    const NONE: Self = Self(0);
+    const ALL: Self = Self((1 << AT_A_TIME) - 1);
 
     #[inline(always)]
-    fn put(&mut self, walker: u32, child: NodeRef) {
-        let kind = child.kind() % kind::COUNT;
-        let at = self.put[kind];
-        self.entries[kind][at % RING] = Entry { walker, child };
-        self.put[kind] = at + 1;
+    fn insert(&mut self, i: usize) {
+        self.0 |= 1 << i;
+    }
+}
+
+impl Iterator for Set {
+    type Item = usize;
+
+    /// Takes the first.
+    #[inline(always)]
+    fn next(&mut self) -> Option<usize> {
+        let (first, any) = (self.0.trailing_zeros() as usize, self.0 != 0);
+        self.0 &= self.0.wrapping_sub(1);
+        any.then_some(first)
+    }
+}
+
+/// Walkers who wait, by the kind of what they visit next.
+///
+/// The sets are kept in one number, and the places of the children do not depend on what they are: while a processor does
+/// not know yet where something will be written, it does not read ahead.
+struct Waiting {
+    /// A [`Set`] for each kind.
+    sets: u64,
+    children: [NodeRef; AT_A_TIME],
+}
+
+impl Waiting {
+    const NOBODY: Self = Self { sets: 0, children: [NodeRef::DONE; AT_A_TIME] };
+
+    #[inline(always)]
+    fn put(&mut self, i: usize, child: NodeRef) {
+        self.children[i % AT_A_TIME] = child;
+        self.sets |= 1 << (i + AT_A_TIME * child.kind());
     }
 
-    /// The places of those who are in a list now.
+    /// What a walker visits next.
     #[inline(always)]
-    fn take(&mut self, kind: usize) -> Range<usize> {
-        let all = self.taken[kind]..self.put[kind];
-        self.taken[kind] = all.end;
-        all
+    fn child(&self, i: usize) -> NodeRef {
+        self.children[i % AT_A_TIME]
+    }
+
+    /// Takes those who wait for a kind.
+    #[inline(always)]
+    fn take(&mut self, kind: usize) -> Set {
+        let set = Set(self.sets >> (AT_A_TIME * kind) & Set::ALL.0);
+        self.sets &= !(Set::ALL.0 << (AT_A_TIME * kind));
+        set
     }
 }

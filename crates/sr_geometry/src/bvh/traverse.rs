@@ -9,7 +9,7 @@ use super::node::kind;
 use super::sheared::Sheared;
 use super::simd::Walk;
 use super::slabs::Line;
-use super::walker::Walker;
+use super::walker::{Turn, Walker};
 use super::{Bvh, Met, Node, NodeRef};
 use crate::{Bounds3, Hit, Ray};
 
@@ -34,28 +34,47 @@ pub(super) fn walk<S: Walk, const ANY: bool>(
     if meets_nothing(ray) {
         return false;
     }
-    let mut walker = MaybeUninit::<Walker<S, ANY>>::uninit();
-    let sheared = Sheared::new(ray.origin, ray.direction);
-    let line = Line::new(ray.origin, ray.direction, ray.t_max, bounds);
-    let walker = Walker::start(&mut walker, simd, root, (ray, &sheared, &line));
-    let mut child = walker.next();
+    let mut walker = MaybeUninit::<Walker<ANY>>::uninit();
+    let mut at = *ray;
+    let mut sheared = Sheared::new(ray.origin, ray.direction);
+    let mut line = Line::new(ray.origin, ray.direction, bounds);
+    let walker = Walker::start(&mut walker, 0, ray.t_max);
+    let mut child = root;
     while child != NodeRef::DONE {
         match child.kind() {
             kind::NODE => {
                 let depth = walker.stack.depth();
-                walker.visit_node(simd, bvh.node(child));
+                child = walker.visit_node(simd, &line, bvh.node(child));
                 if bvh.prefetches {
                     walker.prefetch_since(simd, bvh, depth);
                 }
-            }
-            kind::NARROW => walker.visit_leaf::<true, true>(simd, &bvh.leaves.leaf(child)),
-            kind::FULL => walker.visit_leaf::<false, true>(simd, &bvh.leaves.leaf(child)),
-            _ => {
-                match child {
-                    NodeRef::BACK => walker.go_back(ray),
-                    _ => walker.visit_other(simd, bvh, child.index() as u32, &meet_other),
+                // A child of the node is within reach; what waited before it may not be.
+                if !ANY && walker.stack.depth() < depth && walker.stack.entered() > walker.t {
+                    child = walker.next();
                 }
-                child = walker.next_after_other(simd, bounds);
+                continue;
+            }
+            kind::LEAF => {
+                walker.visit_leaf::<_, true>(simd, &sheared, &bvh.leaves.leaf(child), || at);
+            }
+            _ => {
+                let mut turn = Turn::Stays;
+                match child {
+                    NodeRef::BACK => {
+                        walker.go_back();
+                        at = *ray;
+                    }
+                    _ => turn = walker.visit_other(simd, bvh, &at, child.index() as u32, &meet_other),
+                }
+                child = walker.next();
+                if let Turn::Enters(ray, bounds) = turn {
+                    at = ray;
+                    sheared = Sheared::new(at.origin, at.direction);
+                    line = Line::new(at.origin, at.direction, &bounds);
+                } else if walker.arrives(child) {
+                    sheared = Sheared::new(at.origin, at.direction);
+                    line = Line::new(at.origin, at.direction, bounds);
+                }
                 continue;
             }
         }
@@ -83,6 +102,14 @@ impl Bvh {
         let at = if child.is_node() { node } else { self.leaves.place(child) };
         for line in 0..size_of::<Node>() / LINE {
             simd.prefetch(at.wrapping_add(LINE * line));
+        }
+    }
+
+    /// As `prefetch`, if the tree is so large that this pays.
+    #[inline(always)]
+    pub(super) fn prefetch_if_large<S: Walk>(&self, simd: S, child: NodeRef) {
+        if self.prefetches {
+            self.prefetch(simd, child);
         }
     }
 }

@@ -2,11 +2,9 @@
 
 use std::arch::x86_64::*;
 
-use super::super::leaves::Leaf;
-use super::super::sheared::{Projected, Sheared};
-use super::super::slabs::{Line, Slabs};
+use super::super::slabs::Line;
 use super::super::stack::Stack;
-use super::super::{Node, WIDE, WIDTH};
+use super::super::{Node, NodeRef, WIDE, WIDTH};
 use super::{Eight, Lanes, Walk};
 
 /// Calls an intrinsic.
@@ -187,47 +185,54 @@ impl Avx2 {
     }
 }
 
-/// A ray, and the order in which it meets slots.
-#[derive(Clone, Copy)]
-pub(in crate::bvh) struct Ordered {
-    slabs: Slabs<Avx2>,
-    order: __m256i,
+/// By the bits to be flipped: the slots in the order in which a ray meets them.
+static ORDER: [Slots; WIDTH] = {
+    let mut order = [const { Slots([0; WIDTH]) }; WIDTH];
+    let mut i = 0;
+    while i < WIDTH * WIDTH {
+        order[i / WIDTH].0[i % WIDTH] = ((i / WIDTH) ^ (i % WIDTH)) as u32;
+        i += 1;
+    }
+    order
+};
+
+/// Numbers of slots.
+#[repr(align(32))]
+struct Slots([u32; WIDTH]);
+
+impl Avx2 {
+    /// The slots in the order in which a ray meets them.
+    #[inline(always)]
+    pub(super) fn order(self, line: &Line) -> __m256i {
+        let order = &ORDER[line.flip as usize % WIDTH];
+        avx2!(_mm256_load_si256(order.0.as_ptr().cast()))
+    }
 }
 
 impl Walk for Avx2 {
     type Eight = Self;
-    type Slabs = Ordered;
 
     #[inline(always)]
     fn eight(self) -> Self {
         self
     }
     #[inline(always)]
-    fn slabs(self, line: &Line) -> Ordered {
-        let order = avx2!({
-            let lane = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
-            _mm256_xor_si256(lane, _mm256_set1_epi32(line.flip() as i32))
-        });
-        Ordered { slabs: Slabs::new(self, line), order }
-    }
-    #[inline(always)]
-    fn shorten(self, ray: &mut Ordered, t_max: f32) {
-        ray.slabs.shorten(self, t_max);
-    }
-    #[inline(always)]
-    fn enter(self, ray: &Ordered, node: &Node, stack: &mut Stack) {
-        let [enter, leave] = ray.slabs.meet(self, node);
+    fn enter<const ANY: bool>(self, line: &Line, t_max: f32, node: &Node, stack: &mut Stack) -> NodeRef {
+        let [enter, leave] = line.meet(self, node, t_max);
+        let slots = self.order(line);
         let [children, enters] = stack.top();
         // The top of the stack has room for as many children as a node has.
         avx2!({
             let met = _mm256_cmp_ps::<_CMP_LE_OQ>(enter, leave);
-            let met = _mm256_movemask_ps(_mm256_permutevar8x32_ps(met, ray.order)) as u32;
-            let order = _mm256_permutevar8x32_epi32(ray.order, self.compress(met));
+            let met = _mm256_movemask_ps(_mm256_permutevar8x32_ps(met, slots)) as u32;
+            let order = _mm256_permutevar8x32_epi32(slots, self.compress(met));
             let all = _mm256_load_si256(node.children.as_ptr().cast());
             _mm256_storeu_si256(children.cast(), _mm256_permutevar8x32_epi32(all, order));
-            _mm256_storeu_ps(enters.cast(), _mm256_permutevar8x32_ps(enter, order));
-            stack.keep(met.count_ones());
-        });
+            if !ANY {
+                _mm256_storeu_ps(enters.cast(), _mm256_permutevar8x32_ps(enter, order));
+            }
+            stack.keep_and_pop(met, line.flip, node)
+        })
     }
     #[inline(always)]
     unsafe fn forget_beyond(self, t_max: f32, within: u32, from: [*mut u32; 2], to: [*mut u32; 2]) -> u32 {
@@ -243,10 +248,6 @@ impl Walk for Avx2 {
             _mm256_storeu_ps(to[1].cast(), _mm256_permutevar8x32_ps(enters, order));
             kept.count_ones()
         })
-    }
-    #[inline(always)]
-    fn project_narrow(self, sheared: &Sheared, leaf: &Leaf<'_>) -> Projected<Self> {
-        sheared.project_leaf(self, leaf)
     }
     #[inline(always)]
     fn prefetch(self, at: *const u8) {

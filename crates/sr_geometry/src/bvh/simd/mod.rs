@@ -16,11 +16,9 @@ pub(super) use {avx2::Avx2, avx512::Avx512};
 
 pub(super) use portable::Portable;
 
-use super::leaves::Leaf;
-use super::sheared::{Projected, Sheared};
 use super::slabs::Line;
 use super::stack::Stack;
-use super::{Node, WIDE, WIDTH};
+use super::{Node, NodeRef, WIDE, WIDTH};
 
 /// A number of lanes. `min(a, b)` and `max(a, b)` return `b` where either is NaN.
 pub(super) trait Lanes: Copy {
@@ -78,14 +76,10 @@ pub(super) trait Eight: Lanes {
 pub(super) trait Walk: Lanes {
     /// Eight lanes, for the triangles of a leaf.
     type Eight: Eight;
-    /// A ray, ready to meet the boxes of nodes.
-    type Slabs: Copy;
     fn eight(self) -> Self::Eight;
-    fn slabs(self, line: &Line) -> Self::Slabs;
-    /// Ends the ray at `t_max`.
-    fn shorten(self, slabs: &mut Self::Slabs, t_max: f32);
-    /// Pushes the children of a node that the ray meets, in the order of their slots, the nearest last.
-    fn enter(self, slabs: &Self::Slabs, node: &Node, stack: &mut Stack);
+    /// Of the children of a node that a ray meets before `t_max`, in the order of their slots, pushes all but the nearest
+    /// and returns that; or else what the stack has on top. `ANY`: does not keep where they are entered.
+    fn enter<const ANY: bool>(self, line: &Line, t_max: f32, node: &Node, stack: &mut Stack) -> NodeRef;
     /// Copies those of the eight children at `from` that are `within`, bit by bit, and entered not beyond `t_max`, to
     /// `to`; returns their number. Up to eight are overwritten there.
     ///
@@ -93,8 +87,6 @@ pub(super) trait Walk: Lanes {
     /// Both are places of eight children, and of eight numbers that tell where they are entered. At `from` those that are
     /// `within`, the lowest bits, were written; `to` is not beyond `from`, or does not overlap it.
     unsafe fn forget_beyond(self, t_max: f32, within: u32, from: [*mut u32; 2], to: [*mut u32; 2]) -> u32;
-    /// A leaf's triangles, up to [`super::NARROW`], as a ray sees them.
-    fn project_narrow(self, sheared: &Sheared, leaf: &Leaf<'_>) -> Projected<Self::Eight>;
     /// Asks for the cache line of a byte that may be needed soon. Any address will do: nothing is read.
     fn prefetch(self, at: *const u8);
 }

@@ -1,10 +1,8 @@
 //! Plain Rust, which compilers turn into SSE2 or NEON.
 
-use super::super::leaves::Leaf;
-use super::super::sheared::{Projected, Sheared};
-use super::super::slabs::{Line, Slabs};
+use super::super::slabs::Line;
 use super::super::stack::Stack;
-use super::super::{Node, WIDE, WIDTH};
+use super::super::{Node, NodeRef, WIDE, WIDTH};
 use super::{Eight, Lanes, Walk};
 
 /// Eight lanes in an array.
@@ -127,34 +125,18 @@ impl Eight for Portable {
     }
 }
 
-/// A ray, and the order in which it meets slots.
-#[derive(Clone, Copy)]
-pub(in crate::bvh) struct Ordered {
-    slabs: Slabs<Portable>,
-    flip: u32,
-}
-
 impl Walk for Portable {
     type Eight = Self;
-    type Slabs = Ordered;
 
     #[inline(always)]
     fn eight(self) -> Self {
         self
     }
     #[inline(always)]
-    fn slabs(self, line: &Line) -> Ordered {
-        Ordered { slabs: Slabs::new(self, line), flip: line.flip() }
-    }
-    #[inline(always)]
-    fn shorten(self, slabs: &mut Ordered, t_max: f32) {
-        slabs.slabs.shorten(self, t_max);
-    }
-    #[inline(always)]
-    fn enter(self, ray: &Ordered, node: &Node, stack: &mut Stack) {
-        let [enter, leave] = ray.slabs.meet(self, node);
+    fn enter<const ANY: bool>(self, line: &Line, t_max: f32, node: &Node, stack: &mut Stack) -> NodeRef {
+        let [enter, leave] = line.meet(self, node, t_max);
         for place in 0..WIDTH as u32 {
-            let slot = (place ^ ray.flip) as usize % WIDTH;
+            let slot = (place ^ line.flip) as usize % WIDTH;
             let [child, at] = stack.top();
             // SAFETY: the top of the stack has room for as many children as a node has.
             unsafe {
@@ -162,6 +144,7 @@ impl Walk for Portable {
                 stack.keep(u32::from(enter[slot] <= leave[slot]));
             }
         }
+        stack.pop()
     }
     #[inline(always)]
     unsafe fn forget_beyond(self, t_max: f32, within: u32, from: [*mut u32; 2], to: [*mut u32; 2]) -> u32 {
@@ -175,10 +158,6 @@ impl Walk for Portable {
             }
         }
         kept as u32
-    }
-    #[inline(always)]
-    fn project_narrow(self, sheared: &Sheared, leaf: &Leaf<'_>) -> Projected<Self> {
-        sheared.project_leaf(self, leaf)
     }
     #[inline(always)]
     fn prefetch(self, _at: *const u8) {}
