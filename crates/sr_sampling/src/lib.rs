@@ -10,6 +10,7 @@ pub mod isa;
 pub mod measure;
 pub mod mis;
 pub mod mixture;
+pub mod prefetch;
 pub mod sequence;
 pub mod table;
 pub mod uniforms;
@@ -20,8 +21,9 @@ pub use estimate::{Accumulator, Estimate, format_uncertain};
 pub use measure::{Area, Counting, Lebesgue, Line, Measure, Plane, Real, SolidAngle, to_solid_angle};
 pub use mis::{Heuristic, UnknownHeuristic, balance_weight, mis_estimate, power_weight};
 pub use mixture::{Mix2, Mixture, MixtureError};
+pub use prefetch::prefetch;
 pub use sequence::{Cursor, Independent, OwenSobol, SampleId, Sequence, SequenceKind, UnknownSequence};
 pub use table::{
-    AliasTable, Discrete, PiecewiseConstant1D, PiecewiseConstant2D, SummedArea, TableError, Window,
+    AliasTable, Discrete, Draw2D, PiecewiseConstant1D, PiecewiseConstant2D, SummedArea, TableError, Window,
 };
 pub use uniforms::Uniforms;

@@ -5,7 +5,7 @@
 
 use glam::{BVec3, Vec2, Vec3};
 use sr_geometry::{BATCH, Vec2s, Vec3s};
-use sr_sampling::Sample;
+use sr_sampling::{Draw2D, PiecewiseConstant2D};
 use sr_scene::Rgb;
 
 use super::area::{Patch, Piece, sphere};
@@ -121,6 +121,9 @@ struct Pieces {
     is_triangle: [u32; BATCH],
     /// Of a ball; 0 for others.
     radius: [f32; BATCH],
+    /// Which points the image around the scene was chosen for, and what is drawn from it.
+    at_sky: [u32; BATCH],
+    draws: [Draw2D; BATCH],
     /// What the density of choosing a point of it is multiplied by. Of a flat piece, it has the inverse area in it; of
     /// the image around the scene, it is the density in the image.
     factor: [f32; BATCH],
@@ -136,6 +139,8 @@ impl Pieces {
         normal: Vec3s::splat(Vec3::Z),
         is_triangle: [0; BATCH],
         radius: [0.0; BATCH],
+        at_sky: [0; BATCH],
+        draws: [Draw2D::NONE; BATCH],
         factor: [0.0; BATCH],
     };
 
@@ -168,9 +173,29 @@ impl Pieces {
     }
 
     #[inline(always)]
-    fn set_sky(&mut self, i: usize, pdf_uv: f32) {
+    fn set_sky(&mut self, i: usize, pmf: f32) {
+        self.at_sky[self.skies % BATCH] = i as u32;
         self.skies += 1;
-        (self.radius[i], self.factor[i]) = (0.0, pdf_uv);
+        (self.radius[i], self.factor[i]) = (0.0, pmf);
+    }
+
+    /// Draws points of the image around the scene for those that it was chosen for: all take each step together, for
+    /// most of their time is waiting for memory.
+    #[inline(always)]
+    fn draw_sky(&mut self, table: &PiecewiseConstant2D, u: &Vec2s, uv: &mut Vec2s) {
+        let count = self.skies.min(BATCH);
+        for k in 0..count {
+            self.draws[k] = table.begin(u.get(self.at_sky[k] as usize % BATCH));
+        }
+        for k in 0..count {
+            table.proceed(&mut self.draws[k], u.get(self.at_sky[k] as usize % BATCH));
+        }
+        for k in 0..count {
+            let i = self.at_sky[k] as usize % BATCH;
+            let s = table.finish(self.draws[k], u.get(i));
+            uv.set(i, s.value);
+            self.factor[i] *= s.pdf;
+        }
     }
 }
 
@@ -183,16 +208,25 @@ impl LightSamples {
         match piece {
             Piece::Patch(patch, pdf_area) => self.pieces.set_patch(i, patch, pmf * pdf_area),
             Piece::Ball { center, radius } => self.pieces.set_ball(i, *center, *radius, pmf),
-            Piece::Sky(Sample { value: uv, pdf }) => {
-                self.pieces.set_sky(i, pmf * pdf);
+            Piece::Sky => {
+                self.pieces.set_sky(i, pmf);
                 self.is_far[i] = 1;
-                self.uv.set(i, *uv);
             }
         }
     }
 }
 
 impl Lights {
+    /// Asks for the memory that the radiance of sample `i` will be read from.
+    #[inline(always)]
+    pub(crate) fn prefetch_radiance(&self, samples: &LightSamples, i: usize) {
+        if let Some(sky) = self.sky()
+            && samples.is_far[i] != 0
+        {
+            sky.prefetch_radiance(samples.uv.get(i));
+        }
+    }
+
     /// [`Lights::sample`] from each of the first `count` points, with the uniforms of the same place.
     #[inline(always)]
     pub(crate) fn sample_batch(
@@ -208,7 +242,7 @@ impl Lights {
         for i in 0..count {
             let mut is_piece = false;
             if let Some((id, pmf, rest)) = self.pick(u_pick[i])
-                && let Some(piece) = self.piece(id, from.get(i), rest, u.get(i))
+                && let Some(piece) = self.piece(id, from.get(i), rest)
             {
                 samples.take(i, &piece, pmf, id);
                 is_piece = true;
@@ -236,8 +270,10 @@ impl Lights {
             }
         }
         if let Some(sky) = self.sky()
+            && let Some(table) = sky.plain_table()
             && pieces.skies > 0
         {
+            pieces.draw_sky(table, u, uv);
             let axes = sky.world_from_light();
             for i in 0..count {
                 let (towards, pdf_towards) = direction(&axes, uv.get(i), pieces.factor[i]);

@@ -138,13 +138,26 @@ impl Environment {
 
     /// A point of the image, in proportion to luminance. `None` from a black image.
     #[inline(always)]
-    pub(super) fn sample_image(&self, u: Vec2) -> Option<Sample<Plane>> {
+    fn sample_image(&self, u: Vec2) -> Option<Sample<Plane>> {
         self.table.as_ref()?.sample(u)
     }
 
-    /// Is [`Self::sample_image`] with [`direction`] all there is to sampling?
+    /// Is a point drawn from [`Self::plain_table`], with [`direction`], all there is to sampling?
     pub(super) fn is_plain(&self) -> bool {
-        self.map.mapping == SphereMapping::LatLong && self.portals.is_none()
+        self.plain_table().is_some()
+    }
+
+    /// Over the image, if it is of latitudes and longitudes, is not black, and has no portals.
+    #[inline(always)]
+    pub(super) fn plain_table(&self) -> Option<&PiecewiseConstant2D> {
+        let is_plain = self.map.mapping == SphereMapping::LatLong && self.portals.is_none();
+        self.table.as_ref().filter(|_| is_plain)
+    }
+
+    /// Asks for the memory that [`Self::radiance_at`] reads.
+    #[inline(always)]
+    pub(super) fn prefetch_radiance(&self, uv: Vec2) {
+        self.map.prefetch(uv);
     }
 
     /// The image's axes, for [`direction`].

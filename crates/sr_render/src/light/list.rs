@@ -199,12 +199,10 @@ impl Lights {
 
     /// A piece of a light that shines alike everywhere, or of the image around the scene; `None` for other lights.
     #[inline(always)]
-    pub(super) fn piece(&self, id: LightId, from: Vec3, u_pick: f32, u: Vec2) -> Option<Piece> {
+    pub(super) fn piece(&self, id: LightId, from: Vec3, u_pick: f32) -> Option<Piece> {
         match &self.extended[id.0 as usize] {
             Extended::Area(area) => area.piece(from, u_pick),
-            Extended::Environment(sky) if self.environments.len() == 1 && sky.is_plain() => {
-                sky.sample_image(u).map(Piece::Sky)
-            }
+            Extended::Environment(sky) if self.environments.len() == 1 && sky.is_plain() => Some(Piece::Sky),
             _ => None,
         }
     }

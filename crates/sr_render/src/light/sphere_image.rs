@@ -12,7 +12,7 @@ use glam::{Vec2, Vec3};
 use sr_sampling::warp::unit_circle;
 use sr_scene::{Image, Pixels, Rgb, SphereMapping};
 
-use crate::texture::{bilinear, luminance, texel, to_cell};
+use crate::texture::{bilinear, luminance, prefetch_texel, texel, to_cell};
 
 /// Brighter than any light, and dim enough for sums of it to be finite.
 const BRIGHTEST: f32 = 1e30;
@@ -40,17 +40,33 @@ impl SphereImage {
         self.image.height
     }
 
-    /// The value at a point of the image.
-    #[inline]
-    pub fn at(&self, uv: Vec2) -> Rgb {
+    /// Where a point of the image is between texels: the distance from the first ones' centres.
+    #[inline(always)]
+    fn in_texels(&self, uv: Vec2) -> Vec2 {
         let (width, height) = (self.image.width as f32, self.image.height as f32);
-        let at = Vec2::new(
+        Vec2::new(
             uv.x * width - 0.5,
             match self.mapping {
                 SphereMapping::LatLong => uv.y * (height - 1.0),
                 SphereMapping::EqualAreaOctahedral => uv.y * height - 0.5,
             },
-        );
+        )
+    }
+
+    /// Asks for the memory of the texels around a point of a latitude–longitude image.
+    #[inline(always)]
+    pub fn prefetch(&self, uv: Vec2) {
+        let at = self.in_texels(uv);
+        let (x, y) = (self.column(to_cell(at.x)), to_cell(at.y));
+        for y in [self.row(y), self.row(y + 1)] {
+            prefetch_texel(&self.image, x, y);
+        }
+    }
+
+    /// The value at a point of the image.
+    #[inline]
+    pub fn at(&self, uv: Vec2) -> Rgb {
+        let at = self.in_texels(uv);
         let (x, y) = (to_cell(at.x), to_cell(at.y));
         let t = at - Vec2::new(x as f32, y as f32);
         let color = match self.mapping {

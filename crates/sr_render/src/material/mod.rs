@@ -152,6 +152,14 @@ impl Side {
         if self.is_textured { self.sources.look_up(self.opacity, at, textures) } else { self.constant }
     }
 
+    /// Asks for the memory that [`Self::inputs`] or [`Self::reflectance`] will read.
+    #[inline(always)]
+    pub(crate) fn prefetch(&self, at: &TexturePoint, textures: &Textures) {
+        if self.is_textured {
+            self.sources.prefetch(self.opacity, at, textures);
+        }
+    }
+
     /// The reflectance of a side of [`Queue::LAMBERT`].
     #[inline(always)]
     pub(crate) fn reflectance(&self, at: &TexturePoint, textures: &Textures) -> Rgb {
@@ -160,6 +168,17 @@ impl Side {
 }
 
 impl Sources {
+    #[inline(never)]
+    fn prefetch(&self, opacity: ScalarInput, at: &TexturePoint, textures: &Textures) {
+        for &color in &self.colors {
+            textures.prefetch(color, at);
+        }
+        for &scalar in &self.scalars {
+            textures.prefetch_scalar(scalar, at);
+        }
+        textures.prefetch_scalar(opacity, at);
+    }
+
     #[inline(never)]
     fn look_up(&self, opacity: ScalarInput, at: &TexturePoint, textures: &Textures) -> Inputs {
         Inputs {

@@ -20,7 +20,7 @@ use mip::Pyramid;
 pub(crate) use point::{FurtherUvs, MeshColors, footprint};
 pub use point::{RayCone, TexturePoint};
 use texel::wrapped;
-pub(crate) use texel::{bilinear, texel, to_cell};
+pub(crate) use texel::{bilinear, prefetch_texel, texel, to_cell};
 
 /// Luminance of linear sRGB (ITU-R BT.709).
 #[inline]
@@ -112,6 +112,53 @@ impl Textures {
         match input {
             ColorInput::Constant(color) => color,
             ColorInput::Texture(id) => self.lookup(id, &at.into()),
+        }
+    }
+
+    /// Asks for the memory that a lookup of a colour at a point will read, if it is an image's.
+    #[inline(always)]
+    pub(crate) fn prefetch(&self, input: ColorInput, at: &TexturePoint) {
+        if let ColorInput::Texture(id) = input {
+            self.prefetch_texture(id, at);
+        }
+    }
+
+    /// The same for a scalar.
+    #[inline(always)]
+    pub(crate) fn prefetch_scalar(&self, input: ScalarInput, at: &TexturePoint) {
+        if let ScalarInput::Texture(id) = input {
+            self.prefetch_texture(id, at);
+        }
+    }
+
+    #[inline(never)]
+    fn prefetch_texture(&self, TextureId(id): TextureId, at: &TexturePoint) {
+        let of_image = |image: u32, wrap: Wrap, to_uv: &Affine2| {
+            let image = &self.images[image as usize];
+            let size = Vec2::new(image.width as f32, image.height as f32);
+            let at = to_uv.transform_point2(at.uv) * size - 0.5;
+            let (x, y) = (wrapped(to_cell(at.x), image.width, wrap), to_cell(at.y));
+            for y in [wrapped(y, image.height, wrap), wrapped(y + 1, image.height, wrap)] {
+                prefetch_texel(image, x, y);
+            }
+        };
+        match &self.textures[id as usize] {
+            Texture::Bitmap { image, wrap, to_uv, .. } => of_image(*image, *wrap, to_uv),
+            // further copies are small
+            Texture::Mipmap { image, wrap, to_uv, .. } if at.footprint == 0.0 => {
+                of_image(*image, *wrap, to_uv)
+            }
+            &Texture::Scale([a, b]) => {
+                self.prefetch(a, at);
+                self.prefetch(b, at);
+            }
+            &Texture::Mix { colors: [a, b], weight } => {
+                self.prefetch(a, at);
+                self.prefetch(b, at);
+                self.prefetch_scalar(weight, at);
+            }
+            &Texture::OtherUvs { color, set } => self.prefetch(color, &at.at_set(set)),
+            Texture::Mipmap { .. } | Texture::Checkerboard { .. } | Texture::MeshColor { .. } => {}
         }
     }
 

@@ -26,6 +26,15 @@ const FURTHER_SETS: usize = 3;
 const _: () = assert!(FURTHER_SETS + 1 == MAX_UV_SETS as usize);
 
 impl TexturePoint {
+    /// Texture coordinates 0, and nothing else.
+    pub const ORIGIN: Self = Self {
+        uv: Vec2::ZERO,
+        footprint: 0.0,
+        vertex_color: NO_COLOR,
+        face_color: NO_COLOR,
+        further_uvs: [Vec2::ZERO; FURTHER_SETS],
+    };
+
     /// The same point with another set's coordinates for the first.
     #[inline]
     pub fn at_set(self, set: u8) -> Self {
@@ -40,13 +49,7 @@ const NO_COLOR: Rgb = Rgb::splat(0.5);
 impl From<Vec2> for TexturePoint {
     #[inline(always)]
     fn from(uv: Vec2) -> Self {
-        Self {
-            uv,
-            footprint: 0.0,
-            vertex_color: NO_COLOR,
-            face_color: NO_COLOR,
-            further_uvs: [uv; FURTHER_SETS],
-        }
+        Self { uv, further_uvs: [uv; FURTHER_SETS], ..Self::ORIGIN }
     }
 }
 

@@ -3,6 +3,7 @@
 use std::sync::LazyLock;
 
 use glam::Vec2;
+use sr_sampling::prefetch;
 use sr_scene::{Image, Pixels, Rgb, Wrap};
 
 /// What 8-bit codes mean: of linear images, and of those encoded as sRGB (IEC 61966-2-1).
@@ -48,6 +49,16 @@ pub(crate) fn texel(image: &Image, srgb: bool, x: u32, y: u32) -> Rgb {
     match &image.pixels {
         Pixels::U8 { channels, data } => decoded(data, *channels, &DECODED[usize::from(srgb)], at),
         Pixels::F32 { channels, data } => rgb(data, *channels, at),
+    }
+}
+
+/// Asks for the memory of a texel, which must be inside the image.
+#[inline(always)]
+pub(crate) fn prefetch_texel(image: &Image, x: u32, y: u32) {
+    let at = y as usize * image.width as usize + x as usize;
+    match &image.pixels {
+        Pixels::U8 { channels, data } => prefetch(&data[at * usize::from(*channels)]),
+        Pixels::F32 { channels, data } => prefetch(&data[at * usize::from(*channels)]),
     }
 }
 

@@ -62,8 +62,14 @@ pub fn check_len(len: usize) -> Result<(), TableError> {
 /// The entry whose share of [0, 1) holds `u`. The table must not be all zero.
 #[inline]
 pub fn pick(cumulative: &[u32], u: f32) -> Picked {
-    let at = f64::from(u) * f64::from(TOTAL);
+    let at = to_step(u);
     picked(cumulative, at, cumulative.partition_point(|&c| c <= at as u32) - 1)
+}
+
+/// A uniform in steps.
+#[inline(always)]
+fn to_step(u: f32) -> f64 {
+    f64::from(u) * f64::from(TOTAL)
 }
 
 #[inline(always)]
@@ -93,12 +99,23 @@ pub fn fill_guide(cumulative: &[u32], guide: &mut [u16]) {
     }
 }
 
+/// Which of the 2ᵇ cuts of a guide is for `u`.
+#[inline(always)]
+pub fn cut(bits: u32, u: f32) -> usize {
+    (to_step(u) as u32 >> (TOTAL.trailing_zeros() - bits)) as usize
+}
+
 /// [`pick`], with the table's guide of 2ᵇ cuts: two steps on average, whatever the weights.
 #[inline(always)]
 pub fn pick_guided(cumulative: &[u32], guide: &[u16], bits: u32, u: f32) -> Picked {
-    let at = f64::from(u) * f64::from(TOTAL);
+    pick_from(cumulative, usize::from(guide[cut(bits, u)]), u)
+}
+
+/// [`pick`], from an entry on that is not beyond it.
+#[inline(always)]
+pub fn pick_from(cumulative: &[u32], first: usize, u: f32) -> Picked {
+    let (at, mut index) = (to_step(u), first);
     let step = at as u32;
-    let mut index = usize::from(guide[(step >> (TOTAL.trailing_zeros() - bits)) as usize]);
     while cumulative[index + 1] <= step {
         index += 1;
     }

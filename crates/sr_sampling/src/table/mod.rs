@@ -20,7 +20,7 @@ use thiserror::Error;
 pub use alias::AliasTable;
 pub use discrete::Discrete;
 pub use piecewise_1d::PiecewiseConstant1D;
-pub use piecewise_2d::PiecewiseConstant2D;
+pub use piecewise_2d::{Draw2D, PiecewiseConstant2D};
 pub use summed_area::{SummedArea, Window};
 
 /// Why a table of weights is not a distribution.

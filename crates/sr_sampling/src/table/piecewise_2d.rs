@@ -2,9 +2,11 @@
 
 use glam::Vec2;
 
-use super::{TableError, cumulative};
+use super::TableError;
+use super::cumulative::{self, Picked};
 use crate::distribution::{Distribution, Invert, Sample};
 use crate::measure::Plane;
+use crate::prefetch;
 
 /// A density over [0, 1)² that is constant in each cell of a grid: row 0 at y = 0, column 0 at x = 0.
 ///
@@ -21,6 +23,19 @@ pub struct PiecewiseConstant2D {
     guide_bits: [u32; 2],
     row_guide: Vec<u16>,
     column_guides: Vec<u16>,
+}
+
+/// A sample in the making: [`PiecewiseConstant2D::begin`].
+#[derive(Clone, Copy, Debug)]
+pub struct Draw2D {
+    row: Picked,
+    /// A column that is not beyond the one to be drawn.
+    column: usize,
+}
+
+impl Draw2D {
+    /// Not draw: to fill arrays with.
+    pub const NONE: Self = Self { row: Picked { index: 0, pmf: 0.0, rest: 0.0 }, column: 0 };
 }
 
 impl PiecewiseConstant2D {
@@ -83,6 +98,33 @@ impl PiecewiseConstant2D {
         self.rows.len() - 1
     }
 
+    /// The first of three steps of [`Distribution::sample`]. Each asks for the memory that the next reads, so that
+    /// whoever draws many samples takes each step for all before the next: large pictures' tables are not in caches.
+    #[inline(always)]
+    pub fn begin(&self, u: Vec2) -> Draw2D {
+        let [row_bits, bits] = self.guide_bits;
+        let row = cumulative::pick_guided(&self.rows, &self.row_guide, row_bits, u.y);
+        prefetch(&self.column_guides[(row.index << bits) + cumulative::cut(bits, u.x)]);
+        Draw2D { row, column: 0 }
+    }
+
+    /// The second step.
+    #[inline(always)]
+    pub fn proceed(&self, draw: &mut Draw2D, u: Vec2) {
+        let [_, bits] = self.guide_bits;
+        let guide = &self.column_guides[draw.row.index << bits..];
+        draw.column = usize::from(guide[cumulative::cut(bits, u.x)]);
+        prefetch(&self.columns[draw.row.index * (self.width + 1) + draw.column]);
+    }
+
+    /// The third step.
+    #[inline(always)]
+    pub fn finish(&self, Draw2D { row, column }: Draw2D, u: Vec2) -> Sample<Plane> {
+        let x = cumulative::pick_from(&self.columns[row.index * (self.width + 1)..], column, u.x);
+        let value = Vec2::new(place(x.index, x.rest, self.width), place(row.index, row.rest, self.height()));
+        Sample { value, pdf: (x.pmf * row.pmf * self.cells()) as f32 }
+    }
+
     fn row(&self, y: usize) -> &[u32] {
         &self.columns[y * (self.width + 1)..(y + 1) * (self.width + 1)]
     }
@@ -116,13 +158,9 @@ impl Distribution for PiecewiseConstant2D {
 
     #[inline(always)]
     fn sample(&self, u: Vec2) -> Option<Sample<Plane>> {
-        let [row_bits, bits] = self.guide_bits;
-        let y = cumulative::pick_guided(&self.rows, &self.row_guide, row_bits, u.y);
-        let (columns, guide) =
-            (&self.columns[y.index * (self.width + 1)..], &self.column_guides[y.index << bits..]);
-        let x = cumulative::pick_guided(columns, guide, bits, u.x);
-        let value = Vec2::new(place(x.index, x.rest, self.width), place(y.index, y.rest, self.height()));
-        Some(Sample { value, pdf: (x.pmf * y.pmf * self.cells()) as f32 })
+        let mut draw = self.begin(u);
+        self.proceed(&mut draw, u);
+        Some(self.finish(draw, u))
     }
 
     #[inline]

@@ -98,10 +98,16 @@ pub(super) fn find_models<Q: Sequence>(scene: &Scene, paths: &Paths<Q>, at: &mut
     for i in 0..count {
         at.normal.set(i, at.surfaces.ns.get(i) * turn[i]);
     }
-    for k in 0..pictures.len().min(BATCH) {
+    let count = pictures.len().min(BATCH);
+    for k in 0..count {
+        let i = pictures.get(k);
+        let point = scene.texture_point(&paths.rays.get(i), &at.hits.at(i), paths.cone(i));
+        scene.materials.side(at.queues.side(i)).prefetch(&point, &scene.textures);
+        at.points[k] = point;
+    }
+    for k in 0..count {
         let i = pictures.get(k);
         let side = scene.materials.side(at.queues.side(i));
-        let point = scene.texture_point(&paths.rays.get(i), &at.hits.at(i), paths.cone(i));
-        at.albedo.set(i, side.reflectance(&point, &scene.textures));
+        at.albedo.set(i, side.reflectance(&at.points[k], &scene.textures));
     }
 }

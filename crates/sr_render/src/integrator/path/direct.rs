@@ -50,6 +50,9 @@ pub(super) fn connect<Q: Sequence>(
         }
         shadow.keep_visible(scene, surfaces, (&lights.wi, &lights.target, &lights.is_far), count);
         for i in shadow.list.iter() {
+            scene.lights.prefetch_radiance(lights, i);
+        }
+        for i in shadow.list.iter() {
             let radiance = scene.lights.radiance(&lights.get(i), &scene.textures);
             samples[paths.slot[i] as usize % BATCH].li += shadow.arriving.get(i) * radiance;
         }

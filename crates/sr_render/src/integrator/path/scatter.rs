@@ -2,7 +2,6 @@
 
 use std::ops::Range;
 
-use glam::Vec2;
 use sr_bsdf::Diffuse;
 use sr_geometry::BATCH;
 use sr_sampling::Sequence;
@@ -89,11 +88,16 @@ fn serve<Q: Sequence>(
     for k in 0..bin.count {
         let i = queues.get(first + k);
         let side = scene.materials.side(queues.side(i));
-        let mut point = Vec2::ZERO.into();
         if side.is_textured {
-            point = scene.texture_point(&paths.rays.get(i), &at.hits.at(i), paths.cone(i));
+            let point = scene.texture_point(&paths.rays.get(i), &at.hits.at(i), paths.cone(i));
+            side.prefetch(&point, &scene.textures);
+            at.points[k] = point;
         }
-        bin.set_inputs(k, &side.inputs(&point, &scene.textures));
+    }
+    for k in 0..bin.count {
+        let i = queues.get(first + k);
+        let side = scene.materials.side(queues.side(i));
+        bin.set_inputs(k, &side.inputs(&at.points[k], &scene.textures));
         bin.normal.set(k, at.normal.get(i));
         bin.wo.set(k, -paths.rays.direction.get(i));
         bin.light.set(k, at.lights.wi.get(i));

@@ -10,7 +10,7 @@ use super::super::CameraRays;
 use super::bin::Bin;
 use super::queues::Queues;
 use crate::light::{DeltaSamples, LightSamples};
-use crate::texture::RayCone;
+use crate::texture::{RayCone, TexturePoint};
 
 /// Paths on their way. They lie close together; one that ends makes room for the last one.
 pub(super) struct Paths<Q> {
@@ -130,6 +130,8 @@ pub(super) struct Vertices {
     pub normal: Vec3s,
     /// Albedos of Lambertian surfaces.
     pub albedo: Vec3s,
+    /// Where textures are looked up.
+    pub points: [TexturePoint; BATCH],
     /// Which loop serves which vertex.
     pub queues: Queues,
     /// Those of one kind, side by side.
@@ -151,6 +153,7 @@ impl Vertices {
         surfaces: Surfaces::NONE,
         normal: Vec3s::splat(Vec3::Z),
         albedo: Vec3s::splat(Rgb::ZERO),
+        points: [TexturePoint::ORIGIN; BATCH],
         queues: Queues::EMPTY,
         bin: Bin::NONE,
         lights: LightSamples::NONE,

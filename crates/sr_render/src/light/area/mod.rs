@@ -13,7 +13,7 @@ use std::f32::consts::PI;
 use glam::{Vec2, Vec3};
 use sr_geometry::Cylinder;
 use sr_sampling::warp::concentric_disk;
-use sr_sampling::{AliasTable, Distribution, Plane, Sample, to_solid_angle};
+use sr_sampling::{AliasTable, Distribution, Sample, to_solid_angle};
 use sr_scene::{ColorInput, Rgb};
 
 use super::{LightId, LightSample, Target, cylinder};
@@ -47,8 +47,8 @@ pub(super) enum Piece {
     Patch(Patch, f32),
     /// A sphere that is seen from outside.
     Ball { center: Vec3, radius: f32 },
-    /// A point of the image around the scene, with its density in the image.
-    Sky(Sample<Plane>),
+    /// The image around the scene.
+    Sky,
 }
 
 impl AreaLight {
