@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use glam::{DVec3, Vec2, Vec3};
 use rayon::prelude::*;
+use sr_sampling::prefetch;
 
 use crate::bvh::{Bvh, MAX_INDEX, Met, PrimRef, Round, Tree};
 use crate::curve::{CurveSet, Piece};
@@ -13,6 +14,10 @@ use crate::{
     BilinearPatch, Bounds3, Cylinder, Disk, GeometryError, GeometryInput, Hit, NO_INSTANCE, Ray, Shape,
     ShapeId, Sphere, Tangents, TriangleMesh,
 };
+
+/// Bytes of triangles and positions from which [`Geometry::surfaces`] asks for them before it reads them: what a
+/// second-level cache does not hold.
+const PREFETCH_FROM: usize = 1 << 20;
 
 /// Shapes, groups and instances behind one bounding volume hierarchy; read-only.
 #[derive(Debug)]
@@ -376,6 +381,20 @@ impl Geometry {
         }
     }
 
+    /// Are there so many triangles that their corners are not in caches?
+    #[inline(always)]
+    pub(crate) fn has_many_corners(&self) -> bool {
+        size_of_val(&self.triangles[..]) + size_of_val(&self.positions[..]) > PREFETCH_FROM
+    }
+
+    /// Asks for the memory that [`Geometry::world_corners`] reads of a hit.
+    #[inline(always)]
+    pub(crate) fn prefetch_corners(&self, hit: &Hit) {
+        if let ShapeRecord::Mesh(mesh) = &self.shapes[hit.shape.0 as usize] {
+            prefetch(&self.triangles[(mesh.first_triangle + hit.primitive) as usize]);
+        }
+    }
+
     /// The instance with this index; `None` for [`NO_INSTANCE`].
     #[inline]
     pub(crate) fn placed(&self, instance: u32) -> Option<&PlacedGroup> {
@@ -408,6 +427,21 @@ pub(crate) struct Corners<'a> {
 }
 
 impl Corners<'_> {
+    /// Asks for the memory that the other functions read.
+    #[inline(always)]
+    pub fn prefetch(&self) {
+        let Self { geometry, mesh, indices } = self;
+        for i in indices {
+            prefetch(&geometry.positions[(mesh.first_vertex + i) as usize]);
+            if let Some(first) = mesh.first_normal {
+                prefetch(&geometry.normals[(first + i) as usize]);
+            }
+            if let Some(first) = mesh.first_uv {
+                prefetch(&geometry.uvs[(first + i) as usize]);
+            }
+        }
+    }
+
     /// Positions, in the space of the mesh's list.
     #[inline(always)]
     pub fn positions(&self) -> [Vec3; 3] {

@@ -177,6 +177,16 @@ impl Geometry {
         let (mut is_smooth, mut any_smooth) = ([0_u32; BATCH], false);
         // Those that are no triangles in world space.
         let (mut others, mut other_count) = ([0_u32; BATCH], 0);
+        if self.has_many_corners() {
+            for i in 0..count {
+                self.prefetch_corners(&hits.at(i));
+            }
+            for i in 0..count {
+                if let Some(corners) = self.world_corners(&hits.at(i)) {
+                    corners.prefetch();
+                }
+            }
+        }
         for i in 0..count {
             let hit = hits.at(i);
             let Some(corners) = self.world_corners(&hit) else {
