@@ -15,8 +15,8 @@ use glam::{Vec2, Vec3};
 use sr_bsdf::{
     AnyModel, Beckmann, Blend, Bsdf, Conductor, Dielectric, Diffuse, DiffuseTransmission, Eon, Ggx, Mask,
     MetallicRoughness, MetallicRoughnessInputs, Microfacet, MicrofacetKind, OrenNayar, Part, Plastic,
-    Principled, PrincipledInputs, PrincipledThin, PrincipledThinInputs, Rgb, RoughConductor, RoughDielectric,
-    RoughPlastic, RoughPlasticTables, SmoothCoat, ThinDielectric,
+    Principled, PrincipledInputs, PrincipledThin, PrincipledThinInputs, Rgb, RoughCoat, RoughConductor,
+    RoughDielectric, RoughPlastic, SmoothCoat, ThinDielectric,
 };
 use sr_sampling::isa::{Isa, Work};
 
@@ -34,7 +34,7 @@ fn main() {
     let half = Rgb::splat(0.5);
     let ggx = Microfacet::isotropic(Ggx, 0.3);
     let beckmann = Microfacet::isotropic(Beckmann, 0.3);
-    let coat = RoughPlasticTables::new(MicrofacetKind::Ggx, 0.3, 1.5);
+    let coat = RoughCoat::new(MicrofacetKind::Ggx, 0.3, 1.5);
     let metal = PrincipledInputs { base_color: half, metallic: 1.0, roughness: 0.5, ..Default::default() };
     let all = PrincipledInputs { metallic: 0.3, spec_trans: 0.5, sheen: 0.5, clearcoat: 0.5, ..metal };
     let thin = PrincipledThinInputs { base_color: half, spec_trans: 0.5, ..Default::default() };
@@ -43,76 +43,29 @@ fn main() {
     let parts = [Part::new(0.4, [], Diffuse::new(half).into()), Part::new(0.6, [], of_any)];
 
     // The names are those of Mitsuba's plugins.
-    measure("diffuse", Plain(Diffuse::new(half)));
-    measure("mask", Plain(Mask::new(0.5, Diffuse::new(half))));
-    measure("dielectric", Plain(Dielectric::new(1.5, Rgb::ONE, Rgb::ONE)));
-    measure("thindielectric", Plain(ThinDielectric::new(1.5, Rgb::ONE, Rgb::ONE)));
-    measure("roughdielectric, ggx", Plain(RoughDielectric::new(ggx, 1.5, Rgb::ONE, Rgb::ONE)));
-    measure("roughdielectric, beckmann", Plain(RoughDielectric::new(beckmann, 1.5, Rgb::ONE, Rgb::ONE)));
-    measure("conductor", Plain(Conductor::new(Some(COPPER), Rgb::ONE)));
-    measure("roughconductor, ggx", Plain(copper));
-    measure("roughconductor, beckmann", Plain(RoughConductor::new(beckmann, Some(COPPER), Rgb::ONE)));
-    measure("plastic", Plain(Plastic::new(SmoothCoat::new(1.5), half, Rgb::ONE, false)));
-    measure("roughplastic, ggx", Coated { coat: &coat, distribution: ggx, color: half });
-    measure("roughdiffuse", Plain(OrenNayar::new(half, 0.5)));
-    measure("eon", Plain(Eon::new(half, 0.5)));
-    measure("diffusetransmission", Plain(DiffuseTransmission::new(half, half)));
-    measure("principled", Plain(Principled::new(metal)));
-    measure("principled, all lobes", Plain(Principled::new(all)));
-    measure("principledthin", Plain(PrincipledThin::new(thin)));
-    measure("metallicroughness", Plain(MetallicRoughness::new(MetallicRoughnessInputs::default())));
-    measure("blendbsdf", Plain(Blend::new(parts, false)));
-}
-
-/// How a model is made where many vertices are served. Tables are made anew there, so that compilers know that what is
-/// written is not in them.
-trait Recipe: Copy {
-    type Tables;
-    type Model<'t>: Bsdf;
-    fn tables(self) -> Self::Tables;
-    fn model(self, tables: &Self::Tables) -> Self::Model<'_>;
-}
-
-#[derive(Clone, Copy)]
-struct Plain<B>(B);
-
-impl<B: Bsdf + Copy> Recipe for Plain<B> {
-    type Tables = ();
-    type Model<'t> = B;
-
-    #[inline(always)]
-    fn tables(self) {}
-
-    #[inline(always)]
-    fn model(self, (): &()) -> B {
-        self.0
-    }
-}
-
-#[derive(Clone, Copy)]
-struct Coated<'c> {
-    coat: &'c RoughPlasticTables,
-    distribution: Microfacet<Ggx>,
-    color: Rgb,
-}
-
-impl Recipe for Coated<'_> {
-    type Tables = RoughPlasticTables;
-    type Model<'t> = RoughPlastic<'t, Ggx>;
-
-    #[inline(always)]
-    fn tables(self) -> RoughPlasticTables {
-        self.coat.rebuilt()
-    }
-
-    #[inline(always)]
-    fn model(self, tables: &RoughPlasticTables) -> RoughPlastic<'_, Ggx> {
-        RoughPlastic::of_distribution(self.distribution, tables, self.color, Rgb::ONE, false)
-    }
+    measure("diffuse", Diffuse::new(half));
+    measure("mask", Mask::new(0.5, Diffuse::new(half)));
+    measure("dielectric", Dielectric::new(1.5, Rgb::ONE, Rgb::ONE));
+    measure("thindielectric", ThinDielectric::new(1.5, Rgb::ONE, Rgb::ONE));
+    measure("roughdielectric, ggx", RoughDielectric::new(ggx, 1.5, Rgb::ONE, Rgb::ONE));
+    measure("roughdielectric, beckmann", RoughDielectric::new(beckmann, 1.5, Rgb::ONE, Rgb::ONE));
+    measure("conductor", Conductor::new(Some(COPPER), Rgb::ONE));
+    measure("roughconductor, ggx", copper);
+    measure("roughconductor, beckmann", RoughConductor::new(beckmann, Some(COPPER), Rgb::ONE));
+    measure("plastic", Plastic::new(SmoothCoat::new(1.5), half, Rgb::ONE, false));
+    measure("roughplastic, ggx", RoughPlastic::of_distribution(ggx, &coat, half, Rgb::ONE, false));
+    measure("roughdiffuse", OrenNayar::new(half, 0.5));
+    measure("eon", Eon::new(half, 0.5));
+    measure("diffusetransmission", DiffuseTransmission::new(half, half));
+    measure("principled", Principled::new(metal));
+    measure("principled, all lobes", Principled::new(all));
+    measure("principledthin", PrincipledThin::new(thin));
+    measure("metallicroughness", MetallicRoughness::new(MetallicRoughnessInputs::default()));
+    measure("blendbsdf", Blend::new(parts, false));
 }
 
 /// Prints a line for each angle and function, if the command line names no model or one like this.
-fn measure<R: Recipe>(name: &str, recipe: R) {
+fn measure(name: &str, bsdf: impl Bsdf + Copy) {
     let mut wanted = std::env::args().skip(1).filter(|arg| !arg.starts_with('-')).peekable();
     if wanted.peek().is_some() && !wanted.any(|part| name.contains(&part)) {
         return;
@@ -123,11 +76,7 @@ fn measure<R: Recipe>(name: &str, recipe: R) {
         for function in [Function::Sample, Function::Eval, Function::Pdf] {
             let pass = |vertices: &mut Vertices| {
                 let began = Instant::now();
-                Isa::detect().run(Pass {
-                    recipe: black_box(recipe),
-                    function,
-                    vertices: black_box(vertices),
-                });
+                Isa::detect().run(Pass { bsdf: black_box(bsdf), function, vertices: black_box(vertices) });
                 began.elapsed().as_secs_f64() * 1e9 / VERTICES as f64
             };
             let fastest = (0..PASSES).map(|_| pass(&mut vertices)).fold(f64::INFINITY, f64::min);
@@ -193,20 +142,18 @@ fn set(columns: &mut [Column; 3], i: usize, value: Vec3) {
 }
 
 /// A function of a model, asked about all vertices.
-struct Pass<'v, R> {
-    recipe: R,
+struct Pass<'v, B> {
+    bsdf: B,
     function: Function,
     vertices: &'v mut Vertices,
 }
 
-impl<R: Recipe> Work for Pass<'_, R> {
+impl<B: Bsdf> Work for Pass<'_, B> {
     type Out = ();
 
     #[inline(always)]
     fn run(self) {
-        let Self { recipe, function, vertices: v } = self;
-        let tables = recipe.tables();
-        let bsdf = recipe.model(&tables);
+        let Self { bsdf, function, vertices: v } = self;
         match function {
             Function::Sample => {
                 for i in 0..VERTICES {

@@ -79,7 +79,7 @@ any! {
     /// A smooth coating over a diffuse base.
     Plastic(Plastic), from;
     /// A rough coating over a diffuse base.
-    RoughPlastic(RoughPlastic<'a>);
+    RoughPlastic(RoughPlastic);
     /// Rough diffuse reflection that preserves energy.
     Eon(Eon), from;
     /// Rough diffuse reflection.
@@ -147,9 +147,9 @@ impl<S: MicrofacetShape> From<RoughConductor<S>> for AnyModel<'_> {
     }
 }
 
-impl<'a, S: MicrofacetShape> From<RoughPlastic<'a, S>> for AnyModel<'a> {
+impl<S: MicrofacetShape> From<RoughPlastic<S>> for AnyModel<'_> {
     #[inline]
-    fn from(model: RoughPlastic<'a, S>) -> Self {
+    fn from(model: RoughPlastic<S>) -> Self {
         AnyModel::RoughPlastic(model.of_any_shape())
     }
 }

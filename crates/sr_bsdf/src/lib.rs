@@ -64,7 +64,7 @@ pub use oren_nayar::OrenNayar;
 pub use plastic::{Plastic, SmoothCoat};
 pub use principled::{Principled, PrincipledInputs};
 pub use principled_thin::{PrincipledThin, PrincipledThinInputs};
-pub use rough_coat::{RoughPlasticTables, rough_internal_reflectance};
+pub use rough_coat::{RoughCoat, rough_internal_reflectance};
 pub use rough_conductor::RoughConductor;
 pub use rough_dielectric::RoughDielectric;
 pub use rough_plastic::RoughPlastic;

@@ -9,16 +9,16 @@ use sr_sampling::warp::CosineHemisphere;
 use crate::interface::{dielectric, reflect_about};
 use crate::microfacet::Facet;
 use crate::plastic::{LobeChoice, LobeProbabilities, base_below};
-use crate::rough_coat::RoughPlasticTables;
+use crate::rough_coat::{Curve, RoughCoat};
 use crate::{Bsdf, BsdfSample, Lobes, Microfacet, MicrofacetKind, MicrofacetShape, Rgb};
 
 /// A rough coating that reflects, over a base that scatters in all directions.
 ///
-/// As [`crate::Plastic`], but with what a rough interface lets through (one bounce) from a table. On the
-/// side of +Z only.
+/// As [`crate::Plastic`], but with what a rough interface lets through (one bounce). On the side of +Z only.
 #[derive(Clone, Copy, Debug)]
-pub struct RoughPlastic<'a, S = MicrofacetKind> {
-    coat: &'a RoughPlasticTables,
+pub struct RoughPlastic<S = MicrofacetKind> {
+    /// What the coating lets through.
+    transmittance: Curve,
     distribution: Microfacet<S>,
     eta: f32,
     specular: Rgb,
@@ -26,15 +26,15 @@ pub struct RoughPlastic<'a, S = MicrofacetKind> {
     choice: LobeChoice,
 }
 
-impl<'a> RoughPlastic<'a> {
+impl RoughPlastic {
     /// [`RoughPlastic::of_distribution`], with that of the coat.
     #[inline(always)]
-    pub fn new(coat: &'a RoughPlasticTables, diffuse: Rgb, specular: Rgb, nonlinear: bool) -> Self {
+    pub fn new(coat: &RoughCoat, diffuse: Rgb, specular: Rgb, nonlinear: bool) -> Self {
         Self::of_distribution(*coat.distribution(), coat, diffuse, specular, nonlinear)
     }
 }
 
-impl<'a, S: MicrofacetShape> RoughPlastic<'a, S> {
+impl<S: MicrofacetShape> RoughPlastic<S> {
     /// - `distribution`: that of the coat
     /// - `coat`: made once per material
     /// - `diffuse`: albedo of the base, per channel in [0, 1]
@@ -43,13 +43,13 @@ impl<'a, S: MicrofacetShape> RoughPlastic<'a, S> {
     #[inline(always)]
     pub fn of_distribution(
         distribution: Microfacet<S>,
-        coat: &'a RoughPlasticTables,
+        coat: &RoughCoat,
         diffuse: Rgb,
         specular: Rgb,
         nonlinear: bool,
     ) -> Self {
         Self {
-            coat,
+            transmittance: coat.transmittances(),
             distribution,
             eta: coat.eta(),
             specular,
@@ -60,9 +60,9 @@ impl<'a, S: MicrofacetShape> RoughPlastic<'a, S> {
 
     /// The same model, its shape known at run time.
     #[inline(always)]
-    pub fn of_any_shape(self) -> RoughPlastic<'a> {
-        let Self { coat, distribution, eta, specular, base, choice } = self;
-        RoughPlastic { coat, distribution: distribution.of_any_shape(), eta, specular, base, choice }
+    pub fn of_any_shape(self) -> RoughPlastic {
+        let Self { transmittance, distribution, eta, specular, base, choice } = self;
+        RoughPlastic { transmittance, distribution: distribution.of_any_shape(), eta, specular, base, choice }
     }
 
     /// f and the density for two directions above the surface, with the facet that mirrors one into the other.
@@ -72,7 +72,7 @@ impl<'a, S: MicrofacetShape> RoughPlastic<'a, S> {
         let mirrored = distribution.reflection_pdf(wo, mirror);
         let f = dielectric(mirror.half_cos(), self.eta).reflectance;
         let specular = self.specular * (f * mirrored * distribution.shadowing(wo, wi));
-        let diffuse = self.base * (t_o * self.coat.transmittance(wi.z) * FRAC_1_PI);
+        let diffuse = self.base * (t_o * self.transmittance.at(wi.z) * FRAC_1_PI);
         (specular + diffuse, p.specular * mirrored + p.diffuse * CosineHemisphere.pdf(wi))
     }
 
@@ -82,22 +82,19 @@ impl<'a, S: MicrofacetShape> RoughPlastic<'a, S> {
     }
 }
 
-/// `sample` and `pdf` do not branch, so that compilers can serve many points at a time: what does not count is computed as
-/// well. `eval`, with two places in the table, is not served so, and leaves early.
-impl<S: MicrofacetShape> Bsdf for RoughPlastic<'_, S> {
+/// Nothing here branches, so that compilers can serve many points at a time: what does not count is computed as well.
+impl<S: MicrofacetShape> Bsdf for RoughPlastic<S> {
     #[inline(always)]
     fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
-        if wo.z <= 0.0 || wi.z <= 0.0 {
-            return Rgb::ZERO;
-        }
         let mirror = Facet::between(wo, wi);
-        let t_o = self.coat.transmittance(wo.z);
-        self.eval_pdf(wo, wi, &mirror, self.lobe_probabilities(t_o), t_o).0
+        let t_o = self.transmittance.at(wo.z);
+        let (f, _) = self.eval_pdf(wo, wi, &mirror, self.lobe_probabilities(t_o), t_o);
+        Rgb::select(BVec3::splat(wo.z > 0.0 && wi.z > 0.0), f, Rgb::ZERO)
     }
 
     #[inline(always)]
     fn sample(&self, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
-        let t_o = self.coat.transmittance(wo.z);
+        let t_o = self.transmittance.at(wo.z);
         let p = self.lobe_probabilities(t_o);
         let mirrored = reflect_about(wo, self.distribution.sample_visible(wo, u));
         let scattered = CosineHemisphere.sample(u).map_or(Vec3::ZERO, |s| s.value);
@@ -117,7 +114,7 @@ impl<S: MicrofacetShape> Bsdf for RoughPlastic<'_, S> {
 
     #[inline(always)]
     fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        let p = self.lobe_probabilities(self.coat.transmittance(wo.z));
+        let p = self.lobe_probabilities(self.transmittance.at(wo.z));
         let mirror = Facet::between(wo, wi);
         let pdf =
             p.specular * self.distribution.reflection_pdf(wo, &mirror) + p.diffuse * CosineHemisphere.pdf(wi);
@@ -131,7 +128,7 @@ impl<S: MicrofacetShape> Bsdf for RoughPlastic<'_, S> {
 
     #[inline(always)]
     fn albedo(&self) -> Rgb {
-        let t = self.coat.transmittance(1.0);
+        let t = self.transmittance.at(1.0);
         (1.0 - t) * self.specular + t * t * self.base
     }
 }

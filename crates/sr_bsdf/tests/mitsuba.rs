@@ -5,8 +5,8 @@
 use MicrofacetKind::{Beckmann, Ggx};
 use glam::Vec3;
 use sr_bsdf::{
-    AnyBsdf, Bsdf, Microfacet, MicrofacetKind, Plastic, Rgb, RoughConductor, RoughDielectric, RoughPlastic,
-    RoughPlasticTables, SmoothCoat,
+    AnyBsdf, Bsdf, Microfacet, MicrofacetKind, Plastic, Rgb, RoughCoat, RoughConductor, RoughDielectric,
+    RoughPlastic, SmoothCoat,
 };
 
 const SPECULAR: Rgb = Rgb::new(0.9, 0.8, 0.7);
@@ -27,8 +27,7 @@ fn plastic(nonlinear: bool) -> AnyBsdf<'static> {
 }
 
 fn rough_plastic(kind: MicrofacetKind, alpha: f32, nonlinear: bool) -> AnyBsdf<'static> {
-    let tables = Box::leak(Box::new(RoughPlasticTables::new(kind, alpha, 1.5)));
-    RoughPlastic::new(tables, DIFFUSE, SPECULAR, nonlinear).into()
+    RoughPlastic::new(&RoughCoat::new(kind, alpha, 1.5), DIFFUSE, SPECULAR, nonlinear).into()
 }
 
 /// Differences that are known: Mitsuba's Beckmann masking is a fit that is off by up to 0.35 %, and comes

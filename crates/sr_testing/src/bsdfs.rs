@@ -8,8 +8,8 @@ use std::sync::LazyLock;
 use glam::Vec3;
 use sr_bsdf::{
     AnyBsdf, AnyModel, Bsdf, Conductor, Dielectric, Diffuse, DiffuseTransmission, Eon, Mask, Microfacet,
-    MicrofacetKind, OrenNayar, Plastic, Rgb, RoughConductor, RoughDielectric, RoughPlastic,
-    RoughPlasticTables, SmoothCoat, ThinDielectric,
+    MicrofacetKind, OrenNayar, Plastic, Rgb, RoughCoat, RoughConductor, RoughDielectric, RoughPlastic,
+    SmoothCoat, ThinDielectric,
 };
 
 use crate::{blends, compensated, hair, principled};
@@ -27,9 +27,9 @@ pub(crate) const PINK: Rgb = Rgb::new(0.9, 0.7, 0.8);
 /// η and k of copper at 630, 532 and 465 nm (Johnson & Christy 1972), rounded.
 pub(crate) const COPPER: (Rgb, Rgb) = (Rgb::new(0.27, 1.09, 1.18), Rgb::new(3.41, 2.58, 2.40));
 
-/// The tables of rough plastic, for each kind and each of `COAT_ALPHAS`.
-static COATS: LazyLock<Vec<RoughPlasticTables>> = LazyLock::new(|| {
-    let new = |kind| COAT_ALPHAS.map(|alpha| RoughPlasticTables::new(kind, alpha, 1.5));
+/// The coats of rough plastic, for each kind and each of `COAT_ALPHAS`.
+static COATS: LazyLock<Vec<RoughCoat>> = LazyLock::new(|| {
+    let new = |kind| COAT_ALPHAS.map(|alpha| RoughCoat::new(kind, alpha, 1.5));
     KINDS.into_iter().flat_map(new).collect()
 });
 

@@ -4,8 +4,7 @@ use std::sync::LazyLock;
 
 use sr_bsdf::{
     AlbedoTable, AnyBsdf, CoatedConductor, CoatedConductorTables, CompensatedConductor,
-    CompensatedDielectric, DielectricTables, Microfacet, MicrofacetKind, Rgb, RoughPlastic,
-    RoughPlasticTables,
+    CompensatedDielectric, DielectricTables, Microfacet, MicrofacetKind, Rgb, RoughCoat, RoughPlastic,
 };
 
 use crate::bsdfs::{COPPER, GREEN, PINK};
@@ -23,7 +22,7 @@ struct Tables {
     coated: [CoatedConductorTables; 2],
     /// Rough layers that lose light.
     walked: CoatedConductorTables,
-    plastic: RoughPlasticTables,
+    plastic: RoughCoat,
 }
 
 static TABLES: LazyLock<Vec<Tables>> = LazyLock::new(|| {
@@ -34,7 +33,7 @@ static TABLES: LazyLock<Vec<Tables>> = LazyLock::new(|| {
         glass: DielectricTables::new(kind, alpha, 1.5),
         coated: [0.0, 0.3].map(|coat| CoatedConductorTables::lossless(kind, coat, 1.5, alpha)),
         walked: CoatedConductorTables::walked(kind, 0.3, 1.5, alpha, 5),
-        plastic: RoughPlasticTables::lossless(kind, alpha, 1.5),
+        plastic: RoughCoat::lossless(kind, alpha, 1.5),
     };
     KINDS.into_iter().flat_map(|kind| ALPHAS.map(|alpha| tables(kind, alpha))).collect()
 });

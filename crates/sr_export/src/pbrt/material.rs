@@ -1,7 +1,7 @@
 //! Materials. pbrt's reflect on both sides; holes belong to shapes, tilted normals to the models themselves.
 
 use sr_bsdf::interface::diffuse_reflectance as diffuse_reflectance_of;
-use sr_bsdf::{RoughPlasticTables, rough_internal_reflectance};
+use sr_bsdf::{RoughCoat, rough_internal_reflectance};
 use sr_scene::{
     ColorInput, HairAbsorption, MaterialDesc, MaterialId, MicrofacetKind, Rgb, ScalarInput, Span, TextureId,
 };
@@ -188,8 +188,8 @@ impl Writer<'_> {
                 self.white([*specular_reflectance], span);
                 self.facets(*kind, *multiscatter, span);
                 let ours = match multiscatter {
-                    true => RoughPlasticTables::lossless(model(*kind), *alpha, *eta),
-                    false => RoughPlasticTables::new(model(*kind), *alpha, *eta),
+                    true => RoughCoat::lossless(model(*kind), *alpha, *eta),
+                    false => RoughCoat::new(model(*kind), *alpha, *eta),
                 };
                 let pbrts =
                     rough_internal_reflectance(sr_bsdf::MicrofacetKind::GgxCorrelated, *alpha, *eta, 0.0);

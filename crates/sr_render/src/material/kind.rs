@@ -5,8 +5,8 @@
 
 use sr_bsdf::{
     AnyModel, Beckmann, Bsdf, Conductor, Dielectric, Diffuse, Ggx, GgxCorrelated, Microfacet, MicrofacetKind,
-    MicrofacetShape, Plastic, Rgb, RoughConductor, RoughDielectric, RoughPlastic, RoughPlasticTables,
-    SmoothCoat, ThinDielectric,
+    MicrofacetShape, Plastic, Rgb, RoughCoat, RoughConductor, RoughDielectric, RoughPlastic, SmoothCoat,
+    ThinDielectric,
 };
 
 use super::Materials;
@@ -47,29 +47,22 @@ pub(crate) struct Inputs {
 }
 
 /// Makes models of one kind.
-pub(crate) trait Recipe<'a>: Copy {
-    /// What all models of the kind look things up in.
-    type Tables: 'a;
-    type Model<'t>: Bsdf + Into<AnyModel<'t>>;
+pub(crate) trait Recipe: Copy {
+    type Model: Bsdf + Into<AnyModel<'static>>;
 
-    fn tables(self) -> &'a Self::Tables;
-
-    /// Tables for a loop, which writes elsewhere: [`RoughPlasticTables::rebuilt`].
-    fn own_tables(self) -> Self::Tables;
-
-    fn model<'t>(self, inputs: &Inputs, tables: &'t Self::Tables) -> Self::Model<'t>;
+    fn model(self, inputs: &Inputs) -> Self::Model;
 }
 
 /// What is done with a recipe of whatever type: compiled once for each.
-pub(crate) trait RecipeUser<'a> {
+pub(crate) trait RecipeUser {
     type Out;
-    fn call<R: Recipe<'a>>(self, recipe: R) -> Self::Out;
+    fn call<R: Recipe>(self, recipe: R) -> Self::Out;
 }
 
 impl Materials {
     /// Calls `user` with the recipe of a kind.
     #[inline(always)]
-    pub(crate) fn with_recipe<'a, U: RecipeUser<'a>>(&'a self, kind: u32, user: U) -> U::Out {
+    pub(crate) fn with_recipe<U: RecipeUser>(&self, kind: u32, user: U) -> U::Out {
         use MicrofacetKind::{Beckmann as IsBeckmann, Ggx as IsGgx, GgxCorrelated as IsCorrelated};
         match self.kinds[kind as usize] {
             Kind::Diffuse => user.call(MakeDiffuse),
@@ -100,7 +93,7 @@ impl Materials {
             }
             Kind::Plastic { coat, nonlinear } => user.call(MakePlastic { coat, nonlinear }),
             Kind::RoughPlastic { coat, nonlinear } => {
-                let coat = &self.coats[coat as usize];
+                let coat = self.coats[coat as usize];
                 match coat.distribution().kind() {
                     IsBeckmann => user.call(MakeRoughPlastic { shape: Beckmann, coat, nonlinear }),
                     IsGgx => user.call(MakeRoughPlastic { shape: Ggx, coat, nonlinear }),
@@ -114,20 +107,11 @@ impl Materials {
 #[derive(Clone, Copy)]
 struct MakeDiffuse;
 
-impl<'a> Recipe<'a> for MakeDiffuse {
-    type Tables = ();
-    type Model<'t> = Diffuse;
+impl Recipe for MakeDiffuse {
+    type Model = Diffuse;
 
     #[inline(always)]
-    fn tables(self) -> &'a () {
-        &()
-    }
-
-    #[inline(always)]
-    fn own_tables(self) {}
-
-    #[inline(always)]
-    fn model(self, Inputs { colors, .. }: &Inputs, (): &()) -> Diffuse {
+    fn model(self, Inputs { colors, .. }: &Inputs) -> Diffuse {
         Diffuse::new(colors[0])
     }
 }
@@ -135,20 +119,11 @@ impl<'a> Recipe<'a> for MakeDiffuse {
 #[derive(Clone, Copy)]
 struct MakeDielectric;
 
-impl<'a> Recipe<'a> for MakeDielectric {
-    type Tables = ();
-    type Model<'t> = Dielectric;
+impl Recipe for MakeDielectric {
+    type Model = Dielectric;
 
     #[inline(always)]
-    fn tables(self) -> &'a () {
-        &()
-    }
-
-    #[inline(always)]
-    fn own_tables(self) {}
-
-    #[inline(always)]
-    fn model(self, Inputs { colors, scalars, .. }: &Inputs, (): &()) -> Dielectric {
+    fn model(self, Inputs { colors, scalars, .. }: &Inputs) -> Dielectric {
         Dielectric::new(scalars[0], colors[0], colors[1])
     }
 }
@@ -156,20 +131,11 @@ impl<'a> Recipe<'a> for MakeDielectric {
 #[derive(Clone, Copy)]
 struct MakeThinDielectric;
 
-impl<'a> Recipe<'a> for MakeThinDielectric {
-    type Tables = ();
-    type Model<'t> = ThinDielectric;
+impl Recipe for MakeThinDielectric {
+    type Model = ThinDielectric;
 
     #[inline(always)]
-    fn tables(self) -> &'a () {
-        &()
-    }
-
-    #[inline(always)]
-    fn own_tables(self) {}
-
-    #[inline(always)]
-    fn model(self, Inputs { colors, scalars, .. }: &Inputs, (): &()) -> ThinDielectric {
+    fn model(self, Inputs { colors, scalars, .. }: &Inputs) -> ThinDielectric {
         ThinDielectric::new(scalars[0], colors[0], colors[1])
     }
 }
@@ -177,20 +143,11 @@ impl<'a> Recipe<'a> for MakeThinDielectric {
 #[derive(Clone, Copy)]
 struct MakeRoughDielectric<S>(S);
 
-impl<'a, S: MicrofacetShape> Recipe<'a> for MakeRoughDielectric<S> {
-    type Tables = ();
-    type Model<'t> = RoughDielectric<S>;
+impl<S: MicrofacetShape> Recipe for MakeRoughDielectric<S> {
+    type Model = RoughDielectric<S>;
 
     #[inline(always)]
-    fn tables(self) -> &'a () {
-        &()
-    }
-
-    #[inline(always)]
-    fn own_tables(self) {}
-
-    #[inline(always)]
-    fn model(self, Inputs { colors, scalars, .. }: &Inputs, (): &()) -> RoughDielectric<S> {
+    fn model(self, Inputs { colors, scalars, .. }: &Inputs) -> RoughDielectric<S> {
         let distribution = Microfacet::new(self.0, scalars[0], scalars[1]);
         RoughDielectric::new(distribution, scalars[2], colors[0], colors[1])
     }
@@ -205,20 +162,11 @@ fn index<const HAS_INDEX: bool>(colors: &[Rgb; COLORS]) -> Option<(Rgb, Rgb)> {
     if HAS_INDEX { Some((colors[1], colors[2])) } else { None }
 }
 
-impl<'a, const HAS_INDEX: bool> Recipe<'a> for MakeConductor<HAS_INDEX> {
-    type Tables = ();
-    type Model<'t> = Conductor;
+impl<const HAS_INDEX: bool> Recipe for MakeConductor<HAS_INDEX> {
+    type Model = Conductor;
 
     #[inline(always)]
-    fn tables(self) -> &'a () {
-        &()
-    }
-
-    #[inline(always)]
-    fn own_tables(self) {}
-
-    #[inline(always)]
-    fn model(self, Inputs { colors, .. }: &Inputs, (): &()) -> Conductor {
+    fn model(self, Inputs { colors, .. }: &Inputs) -> Conductor {
         Conductor::new(index::<HAS_INDEX>(colors), colors[0])
     }
 }
@@ -226,20 +174,11 @@ impl<'a, const HAS_INDEX: bool> Recipe<'a> for MakeConductor<HAS_INDEX> {
 #[derive(Clone, Copy)]
 struct MakeRoughConductor<S, const HAS_INDEX: bool>(S);
 
-impl<'a, S: MicrofacetShape, const HAS_INDEX: bool> Recipe<'a> for MakeRoughConductor<S, HAS_INDEX> {
-    type Tables = ();
-    type Model<'t> = RoughConductor<S>;
+impl<S: MicrofacetShape, const HAS_INDEX: bool> Recipe for MakeRoughConductor<S, HAS_INDEX> {
+    type Model = RoughConductor<S>;
 
     #[inline(always)]
-    fn tables(self) -> &'a () {
-        &()
-    }
-
-    #[inline(always)]
-    fn own_tables(self) {}
-
-    #[inline(always)]
-    fn model(self, Inputs { colors, scalars, .. }: &Inputs, (): &()) -> RoughConductor<S> {
+    fn model(self, Inputs { colors, scalars, .. }: &Inputs) -> RoughConductor<S> {
         let distribution = Microfacet::new(self.0, scalars[0], scalars[1]);
         RoughConductor::new(distribution, index::<HAS_INDEX>(colors), colors[0])
     }
@@ -251,52 +190,30 @@ struct MakePlastic {
     nonlinear: bool,
 }
 
-impl<'a> Recipe<'a> for MakePlastic {
-    type Tables = ();
-    type Model<'t> = Plastic;
+impl Recipe for MakePlastic {
+    type Model = Plastic;
 
     #[inline(always)]
-    fn tables(self) -> &'a () {
-        &()
-    }
-
-    #[inline(always)]
-    fn own_tables(self) {}
-
-    #[inline(always)]
-    fn model(self, Inputs { colors, .. }: &Inputs, (): &()) -> Plastic {
+    fn model(self, Inputs { colors, .. }: &Inputs) -> Plastic {
         Plastic::new(self.coat, colors[0], colors[1], self.nonlinear)
     }
 }
 
+/// The coat by value: a loop that had to read it from where it might write would do so again and again.
 #[derive(Clone, Copy)]
-struct MakeRoughPlastic<'a, S> {
+struct MakeRoughPlastic<S> {
     shape: S,
-    coat: &'a RoughPlasticTables,
+    coat: RoughCoat,
     nonlinear: bool,
 }
 
-impl<'a, S: MicrofacetShape> Recipe<'a> for MakeRoughPlastic<'a, S> {
-    type Tables = RoughPlasticTables;
-    type Model<'t> = RoughPlastic<'t, S>;
+impl<S: MicrofacetShape> Recipe for MakeRoughPlastic<S> {
+    type Model = RoughPlastic<S>;
 
     #[inline(always)]
-    fn tables(self) -> &'a RoughPlasticTables {
-        self.coat
-    }
-
-    #[inline(always)]
-    fn own_tables(self) -> RoughPlasticTables {
-        self.coat.rebuilt()
-    }
-
-    #[inline(always)]
-    fn model<'t>(
-        self,
-        Inputs { colors, .. }: &Inputs,
-        tables: &'t RoughPlasticTables,
-    ) -> RoughPlastic<'t, S> {
-        let distribution = Microfacet::isotropic(self.shape, tables.distribution().alpha().x);
-        RoughPlastic::of_distribution(distribution, tables, colors[0], colors[1], self.nonlinear)
+    fn model(self, Inputs { colors, .. }: &Inputs) -> RoughPlastic<S> {
+        let Self { shape, coat, nonlinear } = self;
+        let distribution = Microfacet::isotropic(shape, coat.distribution().alpha().x);
+        RoughPlastic::of_distribution(distribution, &coat, colors[0], colors[1], nonlinear)
     }
 }

@@ -15,7 +15,7 @@ mod uncommon;
 
 use std::ops::Range;
 
-use sr_bsdf::{AnyBsdf, AnyModel, Mask, RoughPlasticTables};
+use sr_bsdf::{AnyBsdf, AnyModel, Mask, RoughCoat};
 use sr_scene::{ColorInput, MaterialId, Rgb, ScalarInput};
 
 use crate::texture::{TexturePoint, Textures};
@@ -33,7 +33,7 @@ pub struct Materials {
     faces: Vec<[Face; 2]>,
     sides: Vec<Side>,
     kinds: Vec<Kind>,
-    coats: Vec<RoughPlasticTables>,
+    coats: Vec<RoughCoat>,
     parts: Parts,
     tables: Tables,
 }
@@ -136,12 +136,12 @@ struct MakeAny {
     inputs: Inputs,
 }
 
-impl<'a> RecipeUser<'a> for MakeAny {
-    type Out = AnyModel<'a>;
+impl RecipeUser for MakeAny {
+    type Out = AnyModel<'static>;
 
     #[inline(always)]
-    fn call<R: Recipe<'a>>(self, recipe: R) -> AnyModel<'a> {
-        recipe.model(&self.inputs, recipe.tables()).into()
+    fn call<R: Recipe>(self, recipe: R) -> AnyModel<'static> {
+        recipe.model(&self.inputs).into()
     }
 }
 

@@ -7,7 +7,7 @@ use std::hash::Hash;
 use rayon::prelude::*;
 use sr_bsdf::{
     AlbedoTable, CoatedConductorTables, CompensatedConductor, DielectricTables, Microfacet, MicrofacetKind,
-    RoughPlasticTables,
+    RoughCoat,
 };
 
 /// More in one scene are an error.
@@ -62,9 +62,9 @@ impl Orders {
     }
 
     /// Makes all, on rayon's current pool: those of rough coatings, and the others.
-    pub fn make(self) -> (Vec<RoughPlasticTables>, Tables) {
+    pub fn make(self) -> (Vec<RoughCoat>, Tables) {
         let coats = self.coats.make(|(kind, [alpha, eta], is_lossless)| {
-            let new = if is_lossless { RoughPlasticTables::lossless } else { RoughPlasticTables::new };
+            let new = if is_lossless { RoughCoat::lossless } else { RoughCoat::new };
             new(kind, f32::from_bits(alpha), f32::from_bits(eta))
         });
         let metals = self.metals.make(|(kind, [alpha])| {
@@ -121,7 +121,7 @@ mod tests {
         let asked = [0.5, 0.25, 0.5].map(|alpha| orders.coat(kind, alpha, 1.5, true));
         assert_eq!((asked, orders.coat(kind, 0.5, 1.5, false), orders.len()), ([0, 1, 0], 2, 3));
         let (coats, others) = orders.make();
-        assert_eq!(coats[1], RoughPlasticTables::lossless(kind, 0.25, 1.5));
+        assert_eq!(coats[1], RoughCoat::lossless(kind, 0.25, 1.5));
         assert!(coats.len() == 3 && others.metals.is_empty());
     }
 }

@@ -5,7 +5,7 @@
 //! leaves, and has a color: the base gets the albedo with which both reflect the same on average.
 
 use sr_bsdf::interface::diffuse_reflectance;
-use sr_bsdf::{MicrofacetKind, RoughPlasticTables, rough_internal_reflectance};
+use sr_bsdf::{MicrofacetKind, RoughCoat, rough_internal_reflectance};
 use sr_scene::{ColorInput, Rgb, TextureDesc};
 
 use super::{FloatTexture, GREY, Params, Reader};
@@ -50,7 +50,7 @@ impl Layer {
                 (clear * kept, clear)
             }
             Some(alpha) => {
-                let ours = RoughPlasticTables::new(GGX, alpha, self.eta).internal_reflectance();
+                let ours = RoughCoat::new(GGX, alpha, self.eta).internal_reflectance();
                 (returned(self.depth), ours)
             }
         };
@@ -154,16 +154,14 @@ mod tests {
             let clear = base.clear_albedo(glam::DVec3::splat(albedo)).x;
             let passes = f64::from(match alpha {
                 None => 0.96,
-                Some(alpha) => {
-                    RoughPlasticTables::new(MicrofacetKind::GgxCorrelated, alpha, 1.5).transmittance(1.0)
-                }
+                Some(alpha) => RoughCoat::new(MicrofacetKind::GgxCorrelated, alpha, 1.5).transmittance(1.0),
             });
             // What enters along the normal leaves in all directions.
             let mean = 1.0 - f64::from(diffuse_reflectance(1.5));
             let leaves = match alpha {
                 None => mean / 2.25,
                 Some(alpha) => {
-                    let tables = RoughPlasticTables::new(MicrofacetKind::GgxCorrelated, alpha, 1.5);
+                    let tables = RoughCoat::new(MicrofacetKind::GgxCorrelated, alpha, 1.5);
                     let cosines = (0..256).map(|i| ((i as f32 + 0.5) / 256.0).sqrt());
                     cosines.map(|cos| f64::from(tables.transmittance(cos))).sum::<f64>() / 256.0 / 2.25
                 }

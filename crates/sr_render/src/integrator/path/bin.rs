@@ -72,11 +72,11 @@ impl Bin {
     }
 
     #[inline(always)]
-    fn model<'a, 't, R: Recipe<'a>>(&self, recipe: R, tables: &'t R::Tables, k: usize) -> Mask<R::Model<'t>> {
+    fn model<R: Recipe>(&self, recipe: R, k: usize) -> Mask<R::Model> {
         let colors = [self.colors[0].get(k), self.colors[1].get(k), self.colors[2].get(k)];
         let scalars = [self.scalars[0][k], self.scalars[1][k], self.scalars[2][k]];
         let opacity = self.opacity[k];
-        Mask::new(opacity, recipe.model(&Inputs { colors, scalars, opacity }, tables))
+        Mask::new(opacity, recipe.model(&Inputs { colors, scalars, opacity }))
     }
 
     #[inline(always)]
@@ -92,29 +92,29 @@ pub(super) struct Serve<'b> {
     pub has_deltas: bool,
 }
 
-impl<'a> RecipeUser<'a> for Serve<'_> {
+impl RecipeUser for Serve<'_> {
     type Out = ();
 
     #[inline(always)]
-    fn call<R: Recipe<'a>>(self, recipe: R) {
+    fn call<R: Recipe>(self, recipe: R) {
         let Self { bin, step, has_deltas } = self;
-        let (lanes, tables) = (bin.lanes(), recipe.own_tables());
+        let lanes = bin.lanes();
         if step.first {
             for k in 0..lanes {
-                bin.albedo.set(k, bin.model(recipe, &tables, k).albedo());
+                bin.albedo.set(k, bin.model(recipe, k).albedo());
             }
         }
         if step.last {
             return;
         }
         for k in 0..lanes {
-            let (model, sight) = (bin.model(recipe, &tables, k), bin.sight(k));
+            let (model, sight) = (bin.model(recipe, k), bin.sight(k));
             bin.to_light.set(k, sight.eval(&model, bin.light.get(k)));
             bin.scattered.set(k, sight.sample(&model, bin.u_lobe[k], bin.u.get(k)));
         }
         if has_deltas {
             for k in 0..lanes {
-                bin.to_delta.set(k, bin.sight(k).f_cos(&bin.model(recipe, &tables, k), bin.delta.get(k)));
+                bin.to_delta.set(k, bin.sight(k).f_cos(&bin.model(recipe, k), bin.delta.get(k)));
             }
         }
     }
