@@ -1,17 +1,17 @@
-//! From primitives to a tree of 8-wide nodes.
+//! From primitives to a tree of 16-wide nodes.
 //!
 //! A node starts with one child, all its primitives, and cuts the child with the largest area in two until it has
-//! eight: the surface area heuristic's greedy collapse of a binary tree, without making that tree.
+//! sixteen: the surface area heuristic's greedy collapse of a binary tree, without making that tree.
 
 use std::ops::Range;
 
 use rayon::prelude::*;
 
 use super::split::{Extent, split_middle, split_sah};
-use super::{LEAF, Node, NodeRef, PrimRef, WIDTH};
+use super::{LEAF, Node, NodeRef, PrimRef, WIDE};
 
 /// The largest number of nodes on a path from the root to a leaf.
-pub(super) const MAX_DEPTH: usize = 36;
+pub(super) const MAX_DEPTH: usize = 28;
 
 /// Subtrees of more primitives than this are built in parallel.
 const PARALLEL: usize = 1 << 12;
@@ -71,8 +71,9 @@ pub(super) fn build(prims: &mut [PrimRef]) -> BuiltTree {
     let extent = Extent::of(prims);
     tree.root = build_subtree(prims, extent, 0, 1, &mut tree);
     if !tree.root.is_node() {
-        tree.nodes.push(Node::new(&[(extent.bounds.bounds(), tree.root)]));
-        tree.root = NodeRef::node(0);
+        let (node, axis) = Node::new(&[(extent.bounds.bounds(), tree.root)]);
+        tree.nodes.push(node);
+        tree.root = NodeRef::node(0, axis);
     }
     tree
 }
@@ -104,8 +105,9 @@ fn build_subtree(
     tree.nodes.push(Node::EMPTY);
     let children = build_children(prims, &parts, first, depth, tree);
     let bounds = parts.iter().map(|part| part.extent.bounds.bounds());
-    tree.nodes[index] = Node::new(&bounds.zip(children).collect::<Vec<_>>());
-    NodeRef::node(index)
+    let (node, axis) = Node::new(&bounds.zip(children).collect::<Vec<_>>());
+    tree.nodes[index] = node;
+    NodeRef::node(index, axis)
 }
 
 fn build_children(
@@ -139,12 +141,12 @@ fn build_children(
     subtrees.into_iter().map(|subtree| tree.append(subtree)).collect()
 }
 
-/// Reorders `prims` and cuts them into at least two and at most eight parts, which follow one another.
+/// Reorders `prims` and cuts them into at least two and at most sixteen parts, which follow one another.
 fn cut(prims: &mut [PrimRef], extent: Extent, depth: usize) -> Vec<Part> {
-    let mut parts = Vec::with_capacity(WIDTH);
+    let mut parts = Vec::with_capacity(WIDE);
     parts.push(Part::new(0..prims.len(), extent));
     let balanced = depth + balanced_depth(prims.len()) >= MAX_DEPTH;
-    while parts.len() < WIDTH {
+    while parts.len() < WIDE {
         let open = parts.iter().enumerate().filter(|(_, part)| !part.done);
         let size = |part: &Part| if balanced { part.range.len() as f32 } else { part.half_area };
         let Some((widest, _)) = open.max_by(|(_, a), (_, b)| size(a).total_cmp(&size(b))) else {
@@ -168,8 +170,8 @@ fn cut(prims: &mut [PrimRef], extent: Extent, depth: usize) -> Vec<Part> {
     parts
 }
 
-/// Levels that are enough for `count` primitives if every node cuts them into eight parts whose sizes differ by
-/// at most a factor of two: each level at least quarters the largest part.
+/// Levels that are enough for `count` primitives if every node cuts them into sixteen parts whose sizes differ by
+/// at most a factor of two: each level leaves at most an eighth of the largest part.
 fn balanced_depth(count: usize) -> usize {
-    1 + (usize::BITS - count.leading_zeros()).div_ceil(2) as usize
+    1 + (usize::BITS - count.leading_zeros()).div_ceil(3) as usize
 }

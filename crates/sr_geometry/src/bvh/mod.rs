@@ -1,4 +1,4 @@
-//! One 8-wide bounding volume hierarchy for triangles, spheres, disks and instances.
+//! One 16-wide bounding volume hierarchy for triangles, spheres, disks and instances.
 //!
 //! In: [`PrimRef`]s, a box and an identity each. Out: [`Bvh`], flat arrays of nodes and of leaves of up to eight
 //! triangles, and a [`Tree`] per call. `build` decides the tree and `slots` where a node's children go. A `walker` is a ray
@@ -45,13 +45,13 @@ use pieces::Pieces;
 use prim::Lanes;
 pub(crate) use prim::PrimRef;
 
-/// Children of a node.
+/// Triangles that are met at a time in a leaf.
 pub(crate) const WIDTH: usize = 8;
 
 /// The most triangles of a leaf.
-const LEAF: usize = 8;
+const LEAF: usize = WIDTH;
 
-/// Triangles of a block that is scanned.
+/// Children of a node, and triangles of a block that is scanned.
 const WIDE: usize = 16;
 
 /// Up to this many triangles get no tree: meeting all of them is faster (see docs/performance.md).

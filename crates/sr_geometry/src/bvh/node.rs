@@ -1,6 +1,6 @@
 //! Nodes, and references to what is below them.
 
-use super::WIDTH;
+use super::WIDE;
 use super::slots::slots;
 use crate::Bounds3;
 
@@ -9,8 +9,8 @@ pub(crate) const MAX_INDEX: usize = (1 << 28) - 1;
 
 /// A child: a node, a leaf of 1 to 8 triangles, or one other primitive.
 ///
-/// From the highest bit: 0, 0, the node (30 bits); 0, 1, the other primitive (30); 1, triangles less one (3), the first
-/// of them (28).
+/// From the highest bit: 0, 0, the axis of the node's [`slots`] (2 bits), the node (28); 0, 1, 0, 0, the other primitive (28);
+/// 1, triangles less one (3), the first of them (28).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(transparent)]
 pub(crate) struct NodeRef(u32);
@@ -34,10 +34,10 @@ impl NodeRef {
     pub const BACK: Self = Self(Self::LEAF - 2);
     const LEAF: u32 = 1 << 31;
     const OTHER: u32 = 1 << 30;
-    const FIRST: u32 = MAX_INDEX as u32;
+    const INDEX: u32 = MAX_INDEX as u32;
 
-    pub fn node(index: usize) -> Self {
-        Self(index as u32)
+    pub fn node(index: usize, axis: usize) -> Self {
+        Self((axis as u32) << 28 | index as u32)
     }
 
     /// Up to eight triangles.
@@ -86,13 +86,19 @@ impl NodeRef {
     /// Of a node or an other primitive.
     #[inline(always)]
     pub fn index(self) -> usize {
-        (self.0 & !Self::OTHER) as usize
+        (self.0 & Self::INDEX) as usize
+    }
+
+    /// The axis of a node's [`slots`].
+    #[inline(always)]
+    pub fn axis(self) -> u32 {
+        self.0 >> 28 & 3
     }
 
     /// The first triangle of a leaf.
     #[inline(always)]
     pub fn first(self) -> usize {
-        (self.0 & Self::FIRST) as usize
+        (self.0 & Self::INDEX) as usize
     }
 
     /// Triangles of a leaf.
@@ -102,32 +108,33 @@ impl NodeRef {
     }
 }
 
-/// Boxes of up to eight children, and the children. A missing child has the empty box.
+/// Boxes of up to sixteen children, and the children. A missing child has the empty box.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct Node {
     /// By axis: the smallest, then the largest coordinates.
-    pub bounds: [[[f32; WIDTH]; 2]; 3],
-    pub children: [NodeRef; WIDTH],
+    pub bounds: [[[f32; WIDE]; 2]; 3],
+    pub children: [NodeRef; WIDE],
 }
 
 impl Node {
     /// Without children.
     pub const EMPTY: Self = {
-        let empty = [[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]];
-        Self { bounds: [empty; 3], children: [NodeRef::NONE; WIDTH] }
+        let empty = [[f32::INFINITY; WIDE], [f32::NEG_INFINITY; WIDE]];
+        Self { bounds: [empty; 3], children: [NodeRef::NONE; WIDE] }
     };
 
-    /// With at most eight children, each in the slot that suits its place.
-    pub fn new(children: &[(Bounds3, NodeRef)]) -> Self {
+    /// With at most sixteen children, each in the slot that suits its place, and the axis of the slots.
+    pub fn new(children: &[(Bounds3, NodeRef)]) -> (Self, usize) {
         let mut node = Self::EMPTY;
-        for (&(bounds, child), slot) in children.iter().zip(slots(children)) {
+        let (slots, axis) = slots(children);
+        for (&(bounds, child), slot) in children.iter().zip(slots) {
             node.children[slot] = child;
             for axis in 0..3 {
                 let [min, max] = &mut node.bounds[axis];
                 (min[slot], max[slot]) = (bounds.min[axis], bounds.max[axis]);
             }
         }
-        node
+        (node, axis)
     }
 }

@@ -17,7 +17,7 @@ type Row<T> = [T; BATCH + CHUNK];
 /// [`Sheared`] and [`Line`] of the rays of a batch, by component.
 #[repr(C, align(64))]
 pub(super) struct Prepared {
-    flip: Row<u32>,
+    flips: Row<u32>,
     near_rows: [Row<u32>; 3],
     origin_near: [Row<f32>; 3],
     origin_far: [Row<f32>; 3],
@@ -40,7 +40,7 @@ impl Prepared {
     const NONE: Self = {
         let (numbers, bits) = ([0.0; BATCH + CHUNK], [0; BATCH + CHUNK]);
         Self {
-            flip: bits,
+            flips: bits,
             near_rows: [bits; 3],
             origin_near: [numbers; 3],
             origin_far: [numbers; 3],
@@ -80,7 +80,7 @@ impl Prepared {
     pub fn set(&mut self, i: usize, ray: &Ray, bounds: &Bounds3) {
         let line = Line::new(ray.origin, ray.direction, bounds);
         let sheared = Sheared::new(ray.origin, ray.direction);
-        self.flip[i] = line.flip;
+        self.flips[i] = line.flips;
         self.longest[i] = sheared.longest;
         self.near[i] = sheared.near;
         for axis in 0..3 {
@@ -103,7 +103,7 @@ impl Prepared {
     pub fn line(&self, i: usize) -> Line {
         let i = i % BATCH;
         Line {
-            flip: self.flip[i],
+            flips: self.flips[i],
             near: lane(&self.near_rows, i),
             origin_near: lane(&self.origin_near, i),
             origin_far: lane(&self.origin_far, i),

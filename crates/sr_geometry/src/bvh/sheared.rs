@@ -67,10 +67,7 @@ impl Sheared {
     /// numbers, or its scale is 0.
     #[inline(always)]
     pub fn new(origin: Vec3, direction: Vec3) -> Self {
-        let length = direction.abs();
-        // Of axes that are equally long the first.
-        let x = length.x >= length.y && length.x >= length.z;
-        let y = !x && length.y >= length.z;
+        let [x, y, _] = longest(direction);
         let turned = |v: Vec3| {
             let pick = |of_x, of_y, of_z| {
                 if x {
@@ -195,6 +192,15 @@ impl Sheared {
         let [shear_x, shear_y] = [lanes.splat(self.shear[0]), lanes.splat(self.shear[1])];
         [lanes.sub(x, lanes.mul(shear_x, z)), lanes.sub(y, lanes.mul(shear_y, z)), z]
     }
+}
+
+/// Along which axis a direction is longest, of axes that are equally long the first.
+#[inline(always)]
+pub(super) fn longest(direction: Vec3) -> [bool; 3] {
+    let length = direction.abs();
+    let x = length.x >= length.y && length.x >= length.z;
+    let y = !x && length.y >= length.z;
+    [x, y, !x && !y]
 }
 
 /// Does the ray meet the plane of a triangle ahead of its origin? In `f64`, where the sign of t is right also for a

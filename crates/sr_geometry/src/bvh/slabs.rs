@@ -1,28 +1,30 @@
 //! A ray, made ready to meet the boxes of a node.
 //!
 //! Slabs are widened by the rounding errors of their own test (Ize 2013) and of the triangles' shear (Woop, Benthin &
-//! Wald 2013), so no box is missed whose triangles would be hit.
+//! Wald 2013), so no box is missed whose triangles would be hit. The shear moves vertices across the ray's longest axis, not
+//! along it: slabs across that axis are as they are, and a ray that leaves a wall does not come back to it.
 
 use glam::Vec3;
 
-use super::sheared::SHEAR_SLACK;
-use super::simd::Eight;
-use super::{Node, WIDTH};
+use super::sheared::{SHEAR_SLACK, longest};
+use super::simd::Lanes;
+use super::slots::flips;
+use super::{Node, WIDE};
 use crate::Bounds3;
 
 /// How an interval's end grows to cover the four roundings of (bound − origin) · ((1 / direction) · slack).
 const FAR_SLACK: f32 = 1.0 + 5.0 * f32::EPSILON;
 
 /// Bytes of a row of [`Node::bounds`].
-const ROW: u32 = size_of::<[f32; WIDTH]>() as u32;
+const ROW: u32 = size_of::<[f32; WIDE]>() as u32;
 
 /// A line among boxes: slabs that a ray is between from (near − `origin_near`) · `inverse` to (far − `origin_far`) ·
 /// `inverse_far`.
 #[derive(Clone, Copy)]
 pub(super) struct Line {
     /// What a child's place in the order of a walk, the last of which is the nearest, differs by from its slot in the node:
-    /// bits to be flipped. See [`super::slots`].
-    pub flip: u32,
+    /// bits to be flipped, four for each axis that a node's slots may have. See [`super::slots`].
+    pub flips: u32,
     /// Per axis, where the nearer ends of slabs are in [`Node::bounds`]: 0 or [`ROW`].
     pub near: [u32; 3],
     /// Origins, moved apart by the rounding errors of sheared vertices.
@@ -42,10 +44,10 @@ impl Line {
         let error = SHEAR_SLACK * if reach.x > reach.y { reach.x } else { reach.y };
         let inverse = 1.0 / direction;
         let sign = |i: f32| i.to_bits() >> 31;
-        let error =
-            Vec3::new(error.copysign(inverse.x), error.copysign(inverse.y), error.copysign(inverse.z));
+        let [x, y, z] = longest(direction).map(|is_longest| if is_longest { 0.0 } else { error });
+        let error = Vec3::new(x.copysign(inverse.x), y.copysign(inverse.y), z.copysign(inverse.z));
         Self {
-            flip: (sign(inverse.x) | sign(inverse.y) << 1 | sign(inverse.z) << 2) ^ (WIDTH as u32 - 1),
+            flips: flips([sign(inverse.x), sign(inverse.y), sign(inverse.z)]),
             near: [ROW * sign(inverse.x), ROW * sign(inverse.y), ROW * sign(inverse.z)],
             origin_near: (origin + error).to_array(),
             origin_far: (origin - error).to_array(),
@@ -54,9 +56,16 @@ impl Line {
         }
     }
 
-    /// Where the ray enters and leaves the boxes of a node's children; it meets those that it enters before it leaves.
+    /// The bits to be flipped in the slots of a node, given their axis.
     #[inline(always)]
-    pub fn meet<S: Eight>(&self, simd: S, node: &Node, t_max: f32) -> [S::F; 2] {
+    pub fn flip(&self, axis: u32) -> u32 {
+        self.flips >> (4 * axis) & (WIDE as u32 - 1)
+    }
+
+    /// Where the ray enters and leaves the boxes of a part of a node's children; it meets those that it enters before it
+    /// leaves.
+    #[inline(always)]
+    pub fn meet<S: Lanes>(&self, simd: S, node: &Node, part: usize, t_max: f32) -> [S::F; 2] {
         let [mut enter, mut leave] = [simd.splat(0.0), simd.splat(t_max)];
         for axis in 0..3 {
             let rows = std::ptr::from_ref(&node.bounds[axis]).cast::<u8>();
@@ -64,7 +73,7 @@ impl Line {
             // SAFETY: the first and the second of two rows, in either order.
             let [near, far] =
                 unsafe { [&*rows.add(row as usize).cast(), &*rows.add((row ^ ROW) as usize).cast()] };
-            let [near, far] = [simd.load(near), simd.load(far)];
+            let [near, far] = [simd.load_part(near, part), simd.load_part(far, part)];
             let near = simd.sub(near, simd.splat(self.origin_near[axis]));
             let far = simd.sub(far, simd.splat(self.origin_far[axis]));
             // A ray within the plane of a slab gives NaN, which `max` and `min` then ignore.

@@ -1,92 +1,125 @@
 //! Which slot of its node a child gets, so that walks meet children about front to back without sorting them.
 //!
-//! Bit k of a slot's number tells to which side of its node along axis k a child lies. A ray of which component k is
-//! negative meets slots with that bit first, so the slots' numbers, with the bits of the ray's negative components
-//! flipped, are the order in which it meets children (Garanzha & Loop 2010; the assignment is as in Ylitie, Karras &
-//! Laine 2017, but greedy).
+//! Children are halved along the axis in which their node is longest, each half along the next axis, the quarters along the
+//! last, and the eighths once more along the first. A slot's number tells the halves, the first one in its highest bit.
+//! A ray that goes the other way along an axis meets the halves in the other order, so the slots' numbers, with the bits of
+//! the ray's negative components flipped, are the order in which it meets children (after Garanzha & Loop 2010, who have
+//! eight).
 
-use glam::Vec3;
-
-use super::{NodeRef, WIDTH};
+use super::{NodeRef, WIDE};
 use crate::Bounds3;
 
-/// A bit for each slot.
-const ALL: u32 = (1 << WIDTH) - 1;
+/// How often children are halved.
+const HALVINGS: usize = WIDE.ilog2() as usize;
 
-/// The slots of at most eight children, all different: again and again, the child that fits a free slot best gets it.
-pub(super) fn slots(children: &[(Bounds3, NodeRef)]) -> [usize; WIDTH] {
+/// The slots of at most sixteen children, all different, and the axis along which they are halved first.
+pub(super) fn slots(children: &[(Bounds3, NodeRef)]) -> ([usize; WIDE], usize) {
     let whole = children.iter().fold(Bounds3::EMPTY, |whole, (bounds, _)| whole.union(*bounds));
-    let middle = twice_middle(&whole);
-    let mut fits = [[0.0; WIDTH]; WIDTH];
-    let mut best = [0; WIDTH];
-    for (child, (bounds, _)) in children.iter().enumerate() {
-        fits[child] = fit(twice_middle(bounds) - middle);
-        best[child] = best_of(&fits[child], ALL);
+    let axis = whole.extent().max_position();
+    let mut order: [u8; WIDE] = std::array::from_fn(|i| i as u8);
+    let mut slots = [0; WIDE];
+    let middles = children.iter().map(|(bounds, _)| (bounds.min + bounds.max).to_array());
+    let mut places = [[0.0; 3]; WIDE];
+    for (place, middle) in places.iter_mut().zip(middles) {
+        *place = middle;
     }
-    let mut slots = [0; WIDTH];
-    let (mut left, mut free) = ((1_u32 << children.len()) - 1, ALL);
-    while left != 0 {
-        let mut child = left.trailing_zeros() as usize;
-        for other in child + 1..children.len() {
-            if left >> other & 1 != 0 && fits[other][best[other]] > fits[child][best[child]] {
-                child = other;
-            }
-        }
-        let slot = best[child];
-        slots[child] = slot;
-        left &= !(1 << child);
-        free &= !(1 << slot);
-        for other in 0..children.len() {
-            if best[other] == slot && free != 0 {
-                best[other] = best_of(&fits[other], free);
-            }
-        }
-    }
-    slots
+    halve(&mut order[..children.len()], &places, (axis, HALVINGS), 0, &mut slots);
+    (slots, axis)
 }
 
-/// How well a child that lies in a direction from the middle of its node fits each slot.
-fn fit(Vec3 { x, y, z }: Vec3) -> [f32; WIDTH] {
-    [-x - y - z, x - y - z, y - x - z, x + y - z, z - x - y, x - y + z, y - x + z, x + y + z]
-}
-
-/// The free slot with the largest number; the first of them if they are no numbers.
-fn best_of(fits: &[f32; WIDTH], free: u32) -> usize {
-    let mut best = free.trailing_zeros() as usize % WIDTH;
-    for slot in best + 1..WIDTH {
-        if free >> slot & 1 != 0 && fits[slot] > fits[best] {
-            best = slot;
+/// Gives children that share the first bits of their slots the others.
+fn halve(
+    children: &mut [u8],
+    places: &[[f32; 3]; WIDE],
+    (axis, left): (usize, usize),
+    first: usize,
+    slots: &mut [usize; WIDE],
+) {
+    if left == 0 || children.is_empty() {
+        for &child in &*children {
+            slots[child as usize] = first;
         }
+        return;
     }
-    best
+    let place = |child: u8| places[child as usize % WIDE][axis];
+    // By insertion: they are few.
+    for end in 1..children.len() {
+        let child = children[end];
+        let mut at = end;
+        while at > 0 && place(children[at - 1]) > place(child) {
+            children[at] = children[at - 1];
+            at -= 1;
+        }
+        children[at] = child;
+    }
+    let (low, high) = children.split_at_mut(children.len().div_ceil(2));
+    let next = ((axis + 1) % 3, left - 1);
+    halve(low, places, next, first, slots);
+    halve(high, places, next, first + (1 << (left - 1)), slots);
 }
 
-fn twice_middle(bounds: &Bounds3) -> Vec3 {
-    bounds.min + bounds.max
+/// Which bits of the slots' numbers are to be flipped for a ray, four for each axis of a node, from the lowest bits on.
+/// `negative`: is the ray's component along an axis negative?
+#[inline(always)]
+pub(super) fn flips(negative: [u32; 3]) -> u32 {
+    let along = |axis: usize| {
+        let [a, b, c] = [negative[axis], negative[(axis + 1) % 3], negative[(axis + 2) % 3]];
+        a << 3 | b << 2 | c << 1 | a
+    };
+    // The last slot is the first that a ray meets.
+    (along(0) | along(1) << 4 | along(2) << 8) ^ 0xfff
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::Vec3;
 
-    fn slots_at(points: &[Vec3]) -> Vec<usize> {
+    fn slots_at(points: &[Vec3]) -> (Vec<usize>, usize) {
         let children: Vec<_> = points.iter().map(|&p| (Bounds3 { min: p, max: p }, NodeRef::NONE)).collect();
-        slots(&children)[..points.len()].to_vec()
+        let (slots, axis) = slots(&children);
+        (slots[..points.len()].to_vec(), axis)
     }
 
     #[test]
-    fn corners_get_their_slots() {
-        let corner = |slot: usize| Vec3::new((slot & 1) as f32, (slot >> 1 & 1) as f32, (slot >> 2) as f32);
-        let order = [6, 1, 4, 7, 0, 2, 5, 3];
-        assert_eq!(slots_at(&order.map(corner)), order);
+    fn cells_of_a_grid_get_their_slots() {
+        // Four along y, two along z and x.
+        let cell = |slot: usize| {
+            Vec3::new((slot >> 1 & 1) as f32, (2 * (slot >> 3) + (slot & 1)) as f32, (slot >> 2 & 1) as f32)
+        };
+        let order = [6, 13, 1, 4, 10, 7, 0, 15, 2, 5, 12, 3, 9, 8, 14, 11];
+        assert_eq!(slots_at(&order.map(cell)), (order.to_vec(), 1));
+    }
+
+    #[test]
+    fn rays_meet_slots_front_to_back() {
+        let along = [Vec3::X, Vec3::Y, Vec3::Z];
+        for axis in 0..3 {
+            for sign in [-1.0, 1.0] {
+                let (slots, of_node) =
+                    slots_at(&std::array::from_fn::<_, WIDE, _>(|i| i as f32 * along[axis]));
+                let negative = (sign * along[axis]).to_array().map(|d| u32::from(d < 0.0));
+                let flip = flips(negative) >> (4 * of_node) & 15;
+                let mut met: Vec<usize> = (0..WIDE).collect();
+                met.sort_by_key(|&i| std::cmp::Reverse(slots[i] ^ flip as usize));
+                let expected: Vec<usize> =
+                    if sign > 0.0 { (0..WIDE).collect() } else { (0..WIDE).rev().collect() };
+                // In halves: the axes between the first and the last halving are not theirs.
+                let half = |i: &usize| i / 8;
+                assert_eq!(
+                    met.iter().map(half).collect::<Vec<_>>(),
+                    expected.iter().map(half).collect::<Vec<_>>()
+                );
+            }
+        }
     }
 
     #[test]
     fn no_two_children_get_the_same_slot() {
         for size in [1.0, 0.0, 3e38, f32::NAN] {
-            for count in 1..=WIDTH {
+            for count in 1..=WIDE {
                 let points: Vec<_> = (0..count).map(|i| size * Vec3::new(1.0, i as f32 / 8.0, 0.5)).collect();
-                let mut slots = slots_at(&points);
+                let (mut slots, _) = slots_at(&points);
                 slots.sort_unstable();
                 slots.dedup();
                 assert_eq!(slots.len(), count, "{count} of size {size}");

@@ -4,11 +4,11 @@ use std::hint::select_unpredictable;
 use std::mem::MaybeUninit;
 
 use super::simd::Walk;
-use super::{MAX_DEPTH, Node, NodeRef, WIDTH};
+use super::{MAX_DEPTH, Node, NodeRef, WIDE, WIDTH};
 
 /// [`NodeRef::DONE`] and [`NodeRef::BACK`], what every node on the way to a leaf leaves, in a tree and in one that is
 /// placed in it (in which none is placed), and what is written at a time.
-const CAPACITY: usize = 2 + 2 * (WIDTH - 1) * MAX_DEPTH + 2 * WIDTH;
+const CAPACITY: usize = 2 + 2 * (WIDE - 1) * MAX_DEPTH + 2 * WIDE;
 
 /// Children that wait for their turn, the next one last, and where the ray enters them. The first is [`NodeRef::DONE`].
 ///
@@ -31,7 +31,7 @@ impl Stack {
     /// Adds a child that is always within reach.
     #[inline(always)]
     pub fn push(&mut self, child: NodeRef) {
-        debug_assert!(self.depth + WIDTH <= CAPACITY);
+        debug_assert!(self.depth + WIDE <= CAPACITY);
         self.children[self.depth].write(child);
         self.enters[self.depth].write(0.0);
         self.depth += 1;
@@ -78,7 +78,7 @@ impl Stack {
         self.depth
     }
 
-    /// Where the next [`WIDTH`] children and the places where they are entered may be written.
+    /// Where the next [`WIDE`] children and the places where they are entered may be written.
     #[inline(always)]
     pub fn top(&mut self) -> [*mut u32; 2] {
         self.at(self.depth)
@@ -97,12 +97,12 @@ impl Stack {
     /// lay there. `met`: which of the node's slots, flipped by `flip`, were written.
     ///
     /// # Safety
-    /// As many were written as `met` has bits, of which there are at most [`WIDTH`].
+    /// As many were written as `met` has bits, of which there are at most [`WIDE`].
     #[inline(always)]
     pub unsafe fn keep_and_pop(&mut self, met: u32, flip: u32, node: &Node) -> NodeRef {
         // Not from the stack, which was just written: the processor would wait for it.
         let nearest = (31 - (met | 1).leading_zeros()) ^ flip;
-        let new = node.children[nearest as usize % WIDTH];
+        let new = node.children[nearest as usize % WIDE];
         // SAFETY: there is at least [`NodeRef::DONE`], as long as it was not popped.
         let old = unsafe { self.children.get_unchecked(self.depth - 1).assume_init() };
         self.depth = self.depth + met.count_ones() as usize - 1;
@@ -131,7 +131,7 @@ impl Stack {
 
     #[inline(always)]
     fn at(&mut self, depth: usize) -> [*mut u32; 2] {
-        debug_assert!(depth + WIDTH <= CAPACITY);
+        debug_assert!(depth + WIDE <= CAPACITY);
         let (children, enters) = (self.children.as_mut_ptr(), self.enters.as_mut_ptr());
         // A `NodeRef` is a `u32`.
         [children.wrapping_add(depth).cast(), enters.wrapping_add(depth).cast()]

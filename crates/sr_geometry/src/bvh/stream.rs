@@ -58,7 +58,7 @@ pub(super) fn walk_many<S: Walk, const ANY: bool>(
             (waiting.take(kind::NODE), waiting.take(kind::LEAF), waiting.take(kind::OTHER));
         for i in nodes {
             let walker = places.walker(i);
-            let next = walker.visit_node(simd, &prepared.line(walker.ray), bvh.node(waiting.child(i)));
+            let next = walker.visit_node(simd, &prepared.line(walker.ray), bvh, waiting.child(i));
             bvh.prefetch_if_large(simd, next);
             waiting.put(i, next);
         }

@@ -57,7 +57,7 @@ fn visit(bvh: &Bvh, child: NodeRef, bounds: &Bounds3, found: &mut Vec<u32>) -> u
     assert!(child.is_node());
     let node = &bvh.nodes[child.index()];
     let mut depth = 0;
-    for slot in (0..8).filter(|&slot| node.children[slot] != NodeRef::NONE) {
+    for slot in (0..WIDE).filter(|&slot| node.children[slot] != NodeRef::NONE) {
         let end = |end: usize| Vec3::from_array([0, 1, 2].map(|axis| node.bounds[axis][end][slot]));
         let inner = Bounds3 { min: end(0), max: end(1) };
         assert_eq!(bounds.union(inner), *bounds);

@@ -3,6 +3,7 @@
 //! In: a ray and the root of a tree that has nodes. Out: the closest hit, or whether there
 //! is any.
 
+use std::hint::select_unpredictable;
 use std::mem::MaybeUninit;
 
 use super::node::kind;
@@ -44,7 +45,7 @@ pub(super) fn walk<S: Walk, const ANY: bool>(
         match child.kind() {
             kind::NODE => {
                 let depth = walker.stack.depth();
-                child = walker.visit_node(simd, &line, bvh.node(child));
+                child = walker.visit_node(simd, &line, bvh, child);
                 if bvh.prefetches {
                     walker.prefetch_since(simd, bvh, depth);
                 }
@@ -98,10 +99,18 @@ impl Bvh {
     #[inline(always)]
     pub(super) fn prefetch<S: Walk>(&self, simd: S, child: NodeRef) {
         const LINE: usize = 64;
+        /// Lines of most leaves.
+        const OF_LEAF: usize = 4;
         let node = self.nodes.as_ptr().wrapping_add(child.index()).cast::<u8>();
-        let at = if child.is_node() { node } else { self.leaves.place(child) };
-        for line in 0..size_of::<Node>() / LINE {
+        // Chosen without a branch, which would be guessed wrongly often.
+        let at = select_unpredictable(child.is_node(), node, self.leaves.place(child));
+        let rest = OF_LEAF * LINE * usize::from(child.is_node());
+        for line in 0..OF_LEAF {
             simd.prefetch(at.wrapping_add(LINE * line));
+        }
+        // Of a leaf the first ones again.
+        for line in 0..size_of::<Node>() / LINE - OF_LEAF {
+            simd.prefetch(at.wrapping_add(rest + LINE * line));
         }
     }
 

@@ -11,7 +11,7 @@ use super::simd::{Eight, Lanes, Walk};
 use super::slabs::Line;
 use super::stack::Stack;
 use super::traverse::meets_nothing;
-use super::{Bvh, Form, Met, Node, NodeRef};
+use super::{Bvh, Form, Met, NodeRef};
 use crate::{Bounds3, Hit, NO_INSTANCE, Ray};
 
 /// Of what is no triangle.
@@ -94,8 +94,8 @@ impl<const ANY: bool> Walker<ANY> {
 
     /// Visits a node; returns what is to be visited next, which may be beyond the closest hit.
     #[inline(always)]
-    pub fn visit_node<S: Walk>(&mut self, simd: S, line: &Line, node: &Node) -> NodeRef {
-        simd.enter::<ANY>(line, self.t, node, &mut self.stack)
+    pub fn visit_node<S: Walk>(&mut self, simd: S, line: &Line, bvh: &Bvh, child: NodeRef) -> NodeRef {
+        simd.enter::<ANY>(line, self.t, bvh.node(child), line.flip(child.axis()), &mut self.stack)
     }
 
     /// Visits a leaf; is anything hit there? `BRANCHES`: guesses whether the ray passes through a triangle, instead of

@@ -185,7 +185,7 @@ impl Avx2 {
     }
 }
 
-/// By the bits to be flipped: the slots in the order in which a ray meets them.
+/// By the lowest bits to be flipped: the slots of half a node in the order in which a ray meets them.
 static ORDER: [Slots; WIDTH] = {
     let mut order = [const { Slots([0; WIDTH]) }; WIDTH];
     let mut i = 0;
@@ -200,15 +200,6 @@ static ORDER: [Slots; WIDTH] = {
 #[repr(align(32))]
 struct Slots([u32; WIDTH]);
 
-impl Avx2 {
-    /// The slots in the order in which a ray meets them.
-    #[inline(always)]
-    pub(super) fn order(self, line: &Line) -> __m256i {
-        let order = &ORDER[line.flip as usize % WIDTH];
-        avx2!(_mm256_load_si256(order.0.as_ptr().cast()))
-    }
-}
-
 impl Walk for Avx2 {
     type Eight = Self;
 
@@ -217,22 +208,38 @@ impl Walk for Avx2 {
         self
     }
     #[inline(always)]
-    fn enter<const ANY: bool>(self, line: &Line, t_max: f32, node: &Node, stack: &mut Stack) -> NodeRef {
-        let [enter, leave] = line.meet(self, node, t_max);
-        let slots = self.order(line);
+    fn enter<const ANY: bool>(
+        self,
+        line: &Line,
+        t_max: f32,
+        node: &Node,
+        flip: u32,
+        stack: &mut Stack,
+    ) -> NodeRef {
+        let order = &ORDER[flip as usize % WIDTH];
         let [children, enters] = stack.top();
-        // The top of the stack has room for as many children as a node has.
-        avx2!({
-            let met = _mm256_cmp_ps::<_CMP_LE_OQ>(enter, leave);
-            let met = _mm256_movemask_ps(_mm256_permutevar8x32_ps(met, slots)) as u32;
-            let order = _mm256_permutevar8x32_epi32(slots, self.compress(met));
-            let all = _mm256_load_si256(node.children.as_ptr().cast());
-            _mm256_storeu_si256(children.cast(), _mm256_permutevar8x32_epi32(all, order));
-            if !ANY {
-                _mm256_storeu_ps(enters.cast(), _mm256_permutevar8x32_ps(enter, order));
-            }
-            stack.keep_and_pop(met, line.flip, node)
-        })
+        let mut all_met = 0_u32;
+        // One half of the node, then the other.
+        for half in 0..WIDE / WIDTH {
+            let part = half ^ ((flip as usize / WIDTH) % (WIDE / WIDTH));
+            let [enter, leave] = line.meet(self, node, part, t_max);
+            let before = all_met.count_ones() as usize;
+            // The top of the stack has room for as many children as a node has.
+            avx2!({
+                let slots = _mm256_load_si256(order.0.as_ptr().cast());
+                let met = _mm256_cmp_ps::<_CMP_LE_OQ>(enter, leave);
+                let met = _mm256_movemask_ps(_mm256_permutevar8x32_ps(met, slots)) as u32;
+                let order = _mm256_permutevar8x32_epi32(slots, self.compress(met));
+                let all = _mm256_load_si256(node.children.as_ptr().add(part * WIDTH).cast());
+                _mm256_storeu_si256(children.add(before).cast(), _mm256_permutevar8x32_epi32(all, order));
+                if !ANY {
+                    _mm256_storeu_ps(enters.add(before).cast(), _mm256_permutevar8x32_ps(enter, order));
+                }
+                all_met |= met << (half * WIDTH);
+            });
+        }
+        // SAFETY: as many were written.
+        unsafe { stack.keep_and_pop(all_met, flip, node) }
     }
     #[inline(always)]
     unsafe fn forget_beyond(self, t_max: f32, within: u32, from: [*mut u32; 2], to: [*mut u32; 2]) -> u32 {

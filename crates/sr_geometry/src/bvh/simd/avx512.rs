@@ -151,6 +151,21 @@ impl Lanes for Avx512 {
     }
 }
 
+/// By the bits to be flipped: the slots in the order in which a ray meets them.
+static ORDER: [Slots; WIDE] = {
+    let mut order = [const { Slots([0; WIDE]) }; WIDE];
+    let mut i = 0;
+    while i < WIDE * WIDE {
+        order[i / WIDE].0[i % WIDE] = ((i / WIDE) ^ (i % WIDE)) as u32;
+        i += 1;
+    }
+    order
+};
+
+/// Numbers of slots.
+#[repr(align(64))]
+struct Slots([u32; WIDE]);
+
 impl Walk for Avx512 {
     type Eight = Avx2;
 
@@ -159,20 +174,28 @@ impl Walk for Avx512 {
         self.0
     }
     #[inline(always)]
-    fn enter<const ANY: bool>(self, line: &Line, t_max: f32, node: &Node, stack: &mut Stack) -> NodeRef {
-        let [enter, leave] = line.meet(self.0, node, t_max);
-        let slots = self.0.order(line);
+    fn enter<const ANY: bool>(
+        self,
+        line: &Line,
+        t_max: f32,
+        node: &Node,
+        flip: u32,
+        stack: &mut Stack,
+    ) -> NodeRef {
+        let [enter, leave] = line.meet(self, node, 0, t_max);
+        let order = &ORDER[flip as usize % WIDE];
         let [children, enters] = stack.top();
         // The top of the stack has room for as many children as a node has.
         avx512!({
-            let enter = _mm256_permutexvar_ps(slots, enter);
-            let met = _mm256_cmp_ps_mask::<_CMP_LE_OQ>(enter, _mm256_permutexvar_ps(slots, leave));
-            let all = _mm256_permutexvar_epi32(slots, _mm256_load_si256(node.children.as_ptr().cast()));
-            _mm256_storeu_si256(children.cast(), _mm256_maskz_compress_epi32(met, all));
+            let slots = _mm512_load_si512(order.0.as_ptr().cast());
+            let enter = _mm512_permutexvar_ps(slots, enter);
+            let met = _mm512_cmp_ps_mask::<_CMP_LE_OQ>(enter, _mm512_permutexvar_ps(slots, leave));
+            let all = _mm512_permutexvar_epi32(slots, _mm512_load_si512(node.children.as_ptr().cast()));
+            _mm512_storeu_si512(children.cast(), _mm512_maskz_compress_epi32(met, all));
             if !ANY {
-                _mm256_storeu_ps(enters.cast(), _mm256_maskz_compress_ps(met, enter));
+                _mm512_storeu_ps(enters.cast(), _mm512_maskz_compress_ps(met, enter));
             }
-            stack.keep_and_pop(u32::from(met), line.flip, node)
+            stack.keep_and_pop(u32::from(met), flip, node)
         })
     }
     #[inline(always)]

@@ -79,7 +79,15 @@ pub(super) trait Walk: Lanes {
     fn eight(self) -> Self::Eight;
     /// Of the children of a node that a ray meets before `t_max`, in the order of their slots, pushes all but the nearest
     /// and returns that; or else what the stack has on top. `ANY`: does not keep where they are entered.
-    fn enter<const ANY: bool>(self, line: &Line, t_max: f32, node: &Node, stack: &mut Stack) -> NodeRef;
+    /// `flip`: the bits to be flipped in the slots' numbers.
+    fn enter<const ANY: bool>(
+        self,
+        line: &Line,
+        t_max: f32,
+        node: &Node,
+        flip: u32,
+        stack: &mut Stack,
+    ) -> NodeRef;
     /// Copies those of the eight children at `from` that are `within`, bit by bit, and entered not beyond `t_max`, to
     /// `to`; returns their number. Up to eight are overwritten there.
     ///

@@ -133,15 +133,23 @@ impl Walk for Portable {
         self
     }
     #[inline(always)]
-    fn enter<const ANY: bool>(self, line: &Line, t_max: f32, node: &Node, stack: &mut Stack) -> NodeRef {
-        let [enter, leave] = line.meet(self, node, t_max);
-        for place in 0..WIDTH as u32 {
-            let slot = (place ^ line.flip) as usize % WIDTH;
+    fn enter<const ANY: bool>(
+        self,
+        line: &Line,
+        t_max: f32,
+        node: &Node,
+        flip: u32,
+        stack: &mut Stack,
+    ) -> NodeRef {
+        let parts = [0, 1].map(|part| line.meet(self, node, part, t_max));
+        for place in 0..WIDE as u32 {
+            let slot = (place ^ flip) as usize % WIDE;
+            let [enter, leave] = parts[slot / WIDTH].map(|of_part| of_part[slot % WIDTH]);
             let [child, at] = stack.top();
             // SAFETY: the top of the stack has room for as many children as a node has.
             unsafe {
-                (*child.cast(), *at.cast()) = (node.children[slot], enter[slot]);
-                stack.keep(u32::from(enter[slot] <= leave[slot]));
+                (*child.cast(), *at.cast()) = (node.children[slot], enter);
+                stack.keep(u32::from(enter <= leave));
             }
         }
         stack.pop()
