@@ -19,6 +19,10 @@ const PARALLEL: usize = 1 << 12;
 /// What fits a leaf is cut further only if the areas of its parts sum to less than this of its own.
 const WORTH_CUTTING: f32 = 1.2;
 
+/// So many triangles fill a lowest node well. The node above is not to cut parts that small any further: many lowest nodes
+/// with few leaves each would take more memory and more steps than few full ones.
+const FILLS_A_NODE: usize = 5 * WIDE;
+
 /// A tree whose leaves are still ranges of the primitives.
 pub(super) struct BuiltTree {
     pub root: NodeRef,
@@ -146,20 +150,27 @@ fn cut(prims: &mut [PrimRef], extent: Extent, depth: usize) -> Vec<Part> {
     let mut parts = Vec::with_capacity(WIDE);
     parts.push(Part::new(0..prims.len(), extent));
     let balanced = depth + balanced_depth(prims.len()) >= MAX_DEPTH;
+    // What is no triangle is a leaf by itself.
+    let full = if prims[0].is_triangle() { FILLS_A_NODE } else { WIDE };
+    let is_above_lowest = prims.len() > full && prims.len() <= WIDE * full;
     while parts.len() < WIDE {
         let open = parts.iter().enumerate().filter(|(_, part)| !part.done);
         let size = |part: &Part| if balanced { part.range.len() as f32 } else { part.half_area };
         let Some((widest, _)) = open.max_by(|(_, a), (_, b)| size(a).total_cmp(&size(b))) else {
             break;
         };
-        let part = &mut parts[widest];
-        let (range, extent) = (part.range.clone(), part.extent);
+        let (range, extent, half_area) =
+            (parts[widest].range.clone(), parts[widest].extent, parts[widest].half_area);
         let prims = &mut prims[range.clone()];
         let is_leaf = fits_leaf(prims);
-        let limit = if is_leaf { WORTH_CUTTING * part.half_area } else { f32::INFINITY };
+        if !is_leaf && is_above_lowest && prims.len() <= full {
+            parts[widest].done = true;
+            continue;
+        }
+        let limit = if is_leaf { WORTH_CUTTING * half_area } else { f32::INFINITY };
         let by_area = if balanced { None } else { split_sah(prims, &extent, limit) };
         let Some(cut) = by_area.or_else(|| (!is_leaf).then(|| split_middle(prims, &extent))) else {
-            part.done = true;
+            parts[widest].done = true;
             continue;
         };
         let middle = range.start + cut.middle;
