@@ -5,9 +5,9 @@
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use glam::Vec2;
-use rayon::prelude::*;
 use sr_geometry::{BATCH, Rays, Vec2s};
 use sr_sampling::Sequence;
 use sr_sampling::isa::{Isa, Work};
@@ -66,14 +66,18 @@ impl<'a, I: Integrator, Q: Sequence> Sampler<'a, I, Q> {
     pub fn pass(&self, first: u32, len: u32, sums: &mut [PixelSums], cancel: &AtomicBool) -> Option<u64> {
         let rejected = AtomicU64::new(0);
         let pixels_per_task = PIXELS_PER_TASK.max(BATCH / len as usize);
-        sums.par_chunks_mut(pixels_per_task).enumerate().for_each_init(
-            || Desk::new(self),
-            |desk, (task, sums)| {
+        // Whoever is done takes the next task, so that all threads end at about the same time.
+        let tasks = Mutex::new(sums.chunks_mut(pixels_per_task).enumerate());
+        let next = || tasks.lock().unwrap_or_else(PoisonError::into_inner).next();
+        rayon::broadcast(|_| {
+            let mut desk = None;
+            while let Some((task, sums)) = next() {
+                let desk = desk.get_or_insert_with(|| Desk::new(self));
                 let first_pixel = (task * pixels_per_task) as u32;
                 let tile = Tile { sampler: self, desk, first_pixel, first, len, sums, cancel };
                 rejected.fetch_add(self.isa.run(tile), Ordering::Relaxed);
-            },
-        );
+            }
+        });
         (!cancel.load(Ordering::Relaxed)).then(|| rejected.into_inner())
     }
 
