@@ -104,15 +104,15 @@ any! {
 
 any! {
     #[inline]
-    /// Any model, with or without holes, or several in one place. `'a` is the lifetime of the material's tables.
-    #[expect(clippy::large_enum_variant, reason = "a box would be an allocation at every hit of a blend")]
+    /// Any model, with or without holes, or several in one place. `'a` is the lifetime of the material's tables, and of a
+    /// blend, which is large.
     AnyBsdf;
     /// The model fills its surface.
     Solid(AnyModel<'a>);
     /// Light also passes straight through.
     Masked(Mask<AnyModel<'a>>);
     /// Several models, or one in a frame of its own.
-    Blended(Blend<'a>);
+    Blended(&'a Blend<'a>);
 }
 
 impl AnyBsdf<'_> {

@@ -8,7 +8,7 @@ use sr_bsdf::{AnyBsdf, Bsdf, BsdfSample, Lobes};
 use sr_geometry::{Hit, Ray, Surface};
 use sr_scene::Rgb;
 
-use crate::material::{Face, Place};
+use crate::material::{Face, Place, Room};
 use crate::scene::Scene;
 use crate::texture::TexturePoint;
 
@@ -57,7 +57,7 @@ pub(crate) struct Sight {
 
 impl Sight {
     /// Of a hit, seen along `ray`, and the scattering model of the side of the material that is seen;
-    /// `at` is where its textures are looked up.
+    /// `at` is where its textures are looked up, and a blend is made in `room`.
     #[inline]
     pub fn with_model<'a>(
         scene: &'a Scene,
@@ -65,6 +65,7 @@ impl Sight {
         hit: &Hit,
         surface: &Surface,
         at: TexturePoint,
+        room: &'a mut Room<'a>,
     ) -> (Self, AnyBsdf<'a>) {
         let (wo, normal) = (-ray.direction, surface.ns);
         let Face { side, turn, .. } =
@@ -78,7 +79,7 @@ impl Sight {
             tangents = [world.dpdu, world.dpdv].map(|w| frame.to_local(w));
         }
         let place = Place { textures: &scene.textures, at, wo: frame.to_local(wo), tangents };
-        (Self { wo: place.wo, frame }, scene.materials.bsdf(side, &place))
+        (Self { wo: place.wo, frame }, scene.materials.bsdf(side, &place, room))
     }
 
     /// Of a surface with normal `n` whose model does not tell the tangent from the bitangent, seen from where `wo`

@@ -33,6 +33,8 @@ pub(crate) fn models() -> Vec<(String, AnyBsdf<'static>)> {
     ];
     named
         .into_iter()
-        .map(|(name, parts, holes)| (name.into(), AnyBsdf::Blended(Blend::new(parts, holes))))
+        .map(|(name, parts, holes)| {
+            (name.into(), AnyBsdf::Blended(Box::leak(Box::new(Blend::new(parts, holes)))))
+        })
         .collect()
 }

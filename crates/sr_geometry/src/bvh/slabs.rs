@@ -62,25 +62,29 @@ impl Line {
         self.flips >> (4 * axis) & (WIDE as u32 - 1)
     }
 
-    /// Where the ray enters and leaves the boxes of a part of a node's children; it meets those that it enters before it
-    /// leaves.
+    /// Where the ray enters and leaves the boxes of a node's children, by part of as many as there are lanes; it meets those
+    /// that it enters before it leaves.
     #[inline(always)]
-    pub fn meet<S: Lanes>(&self, simd: S, node: &Node, part: usize, t_max: f32) -> [S::F; 2] {
-        let [mut enter, mut leave] = [simd.splat(0.0), simd.splat(t_max)];
+    pub fn meet<S: Lanes, const PARTS: usize>(&self, simd: S, node: &Node, t_max: f32) -> [[S::F; 2]; PARTS] {
+        const { assert!(PARTS * S::COUNT == WIDE) };
+        let mut parts = [[simd.splat(0.0), simd.splat(t_max)]; PARTS];
         for axis in 0..3 {
             let rows = std::ptr::from_ref(&node.bounds[axis]).cast::<u8>();
             let row = self.near[axis] & ROW;
             // SAFETY: the first and the second of two rows, in either order.
             let [near, far] =
                 unsafe { [&*rows.add(row as usize).cast(), &*rows.add((row ^ ROW) as usize).cast()] };
-            let [near, far] = [simd.load_part(near, part), simd.load_part(far, part)];
-            let near = simd.sub(near, simd.splat(self.origin_near[axis]));
-            let far = simd.sub(far, simd.splat(self.origin_far[axis]));
-            // A ray within the plane of a slab gives NaN, which `max` and `min` then ignore.
-            enter = simd.max(simd.mul(near, simd.splat(self.inverse[axis])), enter);
-            leave = simd.min(simd.mul(far, simd.splat(self.inverse_far[axis])), leave);
+            let origin = [simd.splat(self.origin_near[axis]), simd.splat(self.origin_far[axis])];
+            let inverse = [simd.splat(self.inverse[axis]), simd.splat(self.inverse_far[axis])];
+            for (part, [enter, leave]) in parts.iter_mut().enumerate() {
+                let near = simd.sub(simd.load_part(near, part), origin[0]);
+                let far = simd.sub(simd.load_part(far, part), origin[1]);
+                // A ray within the plane of a slab gives NaN, which `max` and `min` then ignore.
+                *enter = simd.max(simd.mul(near, inverse[0]), *enter);
+                *leave = simd.min(simd.mul(far, inverse[1]), *leave);
+            }
         }
-        [enter, leave]
+        parts
     }
 }
 

@@ -23,6 +23,7 @@ use super::{
     CameraRays, FIRST_DIMENSION, FirstHit, Integrator, PathLimits, PathSample, from_deltas, visible,
 };
 use crate::light::SeenFrom;
+use crate::material::Room;
 use crate::scene::Scene;
 use crate::strategy::{Basic, Density, MAX_TECHNIQUES, Strategy};
 use crate::texture::RayCone;
@@ -184,7 +185,12 @@ impl StrategyTracer {
         let mut eta = 1.0;
         let mut share = if self.limits.hide_emitters { Share::Nothing } else { Share::All };
         let mut depth = 0;
-        while let Some((le, arrival)) = self.arrive(scene, (&ray, cone), share, &mut path, beta, depth == 0) {
+        loop {
+            let mut room = Room::None;
+            let at = (&ray, cone, share);
+            let Some((le, arrival)) = self.arrive(scene, at, (&mut path, beta), depth == 0, &mut room) else {
+                break;
+            };
             let vertex = arrival.vertex();
             path.li += beta * le;
             depth += 1;
@@ -222,10 +228,10 @@ struct Arrival<'a> {
 }
 
 impl<'a> Arrival<'a> {
-    fn new(scene: &'a Scene, ray: &Ray, hit: &Hit, cone: RayCone) -> Self {
+    fn new(scene: &'a Scene, ray: &Ray, hit: &Hit, cone: RayCone, room: &'a mut Room<'a>) -> Self {
         let surface = scene.geometry.surface(ray, hit);
         let point = scene.texture_point(ray, hit, cone);
-        let (sight, bsdf) = Sight::with_model(scene, ray, hit, &surface, point);
+        let (sight, bsdf) = Sight::with_model(scene, ray, hit, &surface, point, room);
         Self { surface, sight, bsdf }
     }
 
@@ -240,17 +246,16 @@ impl StrategyTracer {
     fn arrive<'a>(
         &self,
         scene: &'a Scene,
-        (ray, cone): (&Ray, RayCone),
-        share: Share,
-        path: &mut PathSample,
-        beta: Rgb,
+        (ray, cone, share): (&Ray, RayCone, Share),
+        (path, beta): (&mut PathSample, Rgb),
         is_first: bool,
+        room: &'a mut Room<'a>,
     ) -> Option<(Rgb, Arrival<'a>)> {
         let Some(hit) = scene.geometry.intersect(ray) else {
             path.li += beta * self.environment(scene, ray, share);
             return None;
         };
-        let arrival = Arrival::new(scene, ray, &hit, cone);
+        let arrival = Arrival::new(scene, ray, &hit, cone, room);
         if is_first {
             path.first = Some(FirstHit::new(&arrival.vertex(), hit.t));
         }

@@ -15,7 +15,7 @@ mod uncommon;
 
 use std::ops::Range;
 
-use sr_bsdf::{AnyBsdf, AnyModel, Mask, RoughCoat};
+use sr_bsdf::{AnyBsdf, AnyModel, Blend, Mask, RoughCoat};
 use sr_scene::{ColorInput, MaterialId, Rgb, ScalarInput};
 
 use crate::texture::{TexturePoint, Textures};
@@ -100,6 +100,9 @@ impl Queue {
     }
 }
 
+/// Where a blend lies while it is asked: it takes some 2 KB, too many to be handed on by value.
+pub(crate) type Room<'a> = Option<Blend<'a>>;
+
 impl Materials {
     /// What is seen of a material from the front, or from behind.
     #[inline(always)]
@@ -118,10 +121,10 @@ impl Materials {
         (self.kinds.len() + 2).min(Queue::COUNT)
     }
 
-    /// The scattering model of one side.
+    /// The scattering model of one side; in `room`, if it needs any.
     #[inline]
-    pub(crate) fn bsdf(&self, side: &Side, place: &Place) -> AnyBsdf<'_> {
-        let Some(kind) = side.kind else { return self.blend(side, place) };
+    pub(crate) fn bsdf<'a>(&'a self, side: &Side, place: &Place, room: &'a mut Room<'a>) -> AnyBsdf<'a> {
+        let Some(kind) = side.kind else { return self.blend(side, place, room) };
         let inputs = side.inputs(&place.at, place.textures);
         let model = self.with_recipe(kind, MakeAny { inputs });
         match inputs.opacity {

@@ -9,7 +9,7 @@ use sr_bsdf::{AnyBsdf, AnyModel, Blend, Part, Step, Tilt};
 use sr_scene::{ColorInput, Rgb, ScalarInput, TextureId, Tilting};
 
 use super::uncommon::Uncommon;
-use super::{MakeAny, Materials, Side, Sources};
+use super::{MakeAny, Materials, Room, Side, Sources};
 use crate::texture::{TexturePoint, Textures};
 
 /// Where a model is made: what its inputs and frames depend on.
@@ -143,7 +143,7 @@ impl StepSource {
 impl Materials {
     /// The models of a side that has parts.
     #[inline(never)]
-    pub(super) fn blend(&self, side: &Side, place: &Place) -> AnyBsdf<'_> {
+    pub(super) fn blend<'a>(&'a self, side: &Side, place: &Place, room: &'a mut Room<'a>) -> AnyBsdf<'a> {
         let Parts { parts, factors, steps } = &self.parts;
         let parts = &parts[side.parts.clone()];
         if let [only] = parts
@@ -158,7 +158,7 @@ impl Materials {
             let steps = steps[part.steps.clone()].iter().map(|step| step.step(&mut inside));
             Part::new(share, steps, self.model(&part.model, place))
         };
-        AnyBsdf::Blended(Blend::new(parts.iter().map(part), side.has_holes))
+        AnyBsdf::Blended(room.insert(Blend::new(parts.iter().map(part), side.has_holes)))
     }
 
     fn model(&self, source: &ModelSource, place: &Place) -> AnyModel<'_> {

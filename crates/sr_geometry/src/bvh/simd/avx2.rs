@@ -218,28 +218,31 @@ impl Walk for Avx2 {
     ) -> NodeRef {
         let order = &ORDER[flip as usize % WIDTH];
         let [children, enters] = stack.top();
+        let [low, high] = line.meet(self, node, t_max);
+        // The halves of the node in the order in which the ray meets them: chosen, not branched to.
+        let first = flip as usize / WIDTH % (WIDE / WIDTH);
         let mut all_met = 0_u32;
-        // One half of the node, then the other.
-        for half in 0..WIDE / WIDTH {
-            let part = half ^ ((flip as usize / WIDTH) % (WIDE / WIDTH));
-            let [enter, leave] = line.meet(self, node, part, t_max);
-            let before = all_met.count_ones() as usize;
-            // The top of the stack has room for as many children as a node has.
-            avx2!({
-                let slots = _mm256_load_si256(order.0.as_ptr().cast());
+        // The top of the stack has room for as many children as a node has.
+        avx2!({
+            let slots = _mm256_load_si256(order.0.as_ptr().cast());
+            let is_high = _mm256_castsi256_ps(_mm256_set1_epi32(-(first as i32)));
+            for half in 0..WIDE / WIDTH {
+                let (one, other) = if half == 0 { (low, high) } else { (high, low) };
+                let enter = _mm256_blendv_ps(one[0], other[0], is_high);
+                let leave = _mm256_blendv_ps(one[1], other[1], is_high);
                 let met = _mm256_cmp_ps::<_CMP_LE_OQ>(enter, leave);
                 let met = _mm256_movemask_ps(_mm256_permutevar8x32_ps(met, slots)) as u32;
                 let order = _mm256_permutevar8x32_epi32(slots, self.compress(met));
-                let all = _mm256_load_si256(node.children.as_ptr().add(part * WIDTH).cast());
+                let all = _mm256_load_si256(node.children.as_ptr().add((half ^ first) * WIDTH).cast());
+                let before = all_met.count_ones() as usize;
                 _mm256_storeu_si256(children.add(before).cast(), _mm256_permutevar8x32_epi32(all, order));
                 if !ANY {
                     _mm256_storeu_ps(enters.add(before).cast(), _mm256_permutevar8x32_ps(enter, order));
                 }
                 all_met |= met << (half * WIDTH);
-            });
-        }
-        // SAFETY: as many were written.
-        unsafe { stack.keep_and_pop(all_met, flip, node) }
+            }
+            stack.keep_and_pop(all_met, flip, node)
+        })
     }
     #[inline(always)]
     unsafe fn forget_beyond(self, t_max: f32, within: u32, from: [*mut u32; 2], to: [*mut u32; 2]) -> u32 {

@@ -182,7 +182,7 @@ impl Walk for Avx512 {
         flip: u32,
         stack: &mut Stack,
     ) -> NodeRef {
-        let [enter, leave] = line.meet(self, node, 0, t_max);
+        let [[enter, leave]] = line.meet(self, node, t_max);
         let order = &ORDER[flip as usize % WIDE];
         let [children, enters] = stack.top();
         // The top of the stack has room for as many children as a node has.

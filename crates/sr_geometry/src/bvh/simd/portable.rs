@@ -141,7 +141,7 @@ impl Walk for Portable {
         flip: u32,
         stack: &mut Stack,
     ) -> NodeRef {
-        let parts = [0, 1].map(|part| line.meet(self, node, part, t_max));
+        let parts: [_; WIDE / WIDTH] = line.meet(self, node, t_max);
         for place in 0..WIDE as u32 {
             let slot = (place ^ flip) as usize % WIDE;
             let [enter, leave] = parts[slot / WIDTH].map(|of_part| of_part[slot % WIDTH]);

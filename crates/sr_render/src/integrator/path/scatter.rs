@@ -11,7 +11,7 @@ use super::super::{FirstHit, PathSample};
 use super::bin::Serve;
 use super::state::{Paths, Vertices};
 use super::{Step, dimension};
-use crate::material::Queue;
+use crate::material::{Queue, Room};
 use crate::scene::Scene;
 use crate::vertex::{Sight, Vertex};
 
@@ -135,7 +135,8 @@ fn visit<Q: Sequence>(
     let (hit, ray) = (at.hits.at(i), paths.rays.get(i));
     let surface = at.surfaces.get(i, scene.geometry.uv(&ray, &hit));
     let point = scene.texture_point(&ray, &hit, paths.cone(i));
-    let (sight, bsdf) = Sight::with_model(scene, &ray, &hit, &surface, point);
+    let mut room = Room::None;
+    let (sight, bsdf) = Sight::with_model(scene, &ray, &hit, &surface, point, &mut room);
     let vertex = Vertex { surface: &surface, sight: &sight, bsdf: &bsdf };
     if step.first {
         samples[paths.slot[i] as usize % BATCH].first = Some(FirstHit::new(&vertex, hit.t));
