@@ -1,7 +1,7 @@
 //! Shapes and the rays that meet them.
 //!
 //! In: [`GeometryInput`], borrowed triangle meshes, spheres, disks, cylinders, bilinear patches and curves in world space and in
-//! groups that [`Instance`]s place. Out: [`Geometry`], flat arrays behind one 8-wide bounding volume hierarchy, which answers
+//! groups that [`Instance`]s place. Out: [`Geometry`], flat arrays behind one 16-wide bounding volume hierarchy, which answers
 //! [`Geometry::intersect`] (closest [`Hit`]), [`Geometry::occluded`] (any hit) and [`Geometry::surface`]
 //! (position with its error bound, normals, texture coordinates), for one ray or for a batch of [`Rays`]. No material
 //! and no light is known here.

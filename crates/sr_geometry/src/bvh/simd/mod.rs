@@ -88,11 +88,11 @@ pub(super) trait Walk: Lanes {
         flip: u32,
         stack: &mut Stack,
     ) -> NodeRef;
-    /// Copies those of the eight children at `from` that are `within`, bit by bit, and entered not beyond `t_max`, to
-    /// `to`; returns their number. Up to eight are overwritten there.
+    /// Copies those of the children at `from` that are `within`, bit by bit, and entered not beyond `t_max`, to
+    /// `to`; returns their number. Up to [`WIDTH`] are overwritten there.
     ///
     /// # Safety
-    /// Both are places of eight children, and of eight numbers that tell where they are entered. At `from` those that are
+    /// Both are places of [`WIDTH`] children, and of as many numbers that tell where they are entered. At `from` those that are
     /// `within`, the lowest bits, were written; `to` is not beyond `from`, or does not overlap it.
     unsafe fn forget_beyond(self, t_max: f32, within: u32, from: [*mut u32; 2], to: [*mut u32; 2]) -> u32;
     /// Asks for the cache line of a byte that may be needed soon. Any address will do: nothing is read.
