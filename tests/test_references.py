@@ -43,7 +43,14 @@ SAMPLES = {
     "veach-ajar": 256,
     "living-room": 128,
     "staircase": 128,
+    "classroom": 128,
+    "kitchenette": 128,
+    "torus": 256,
 }
+
+# Light that glass gathers, and a sun: most of a pixel's variance is in paths that neither picture has met.
+# Their means and blocks are compared.
+HEAVY_TAILS = {"torus"}
 
 
 class Comparison(NamedTuple):
@@ -163,6 +170,7 @@ def test_image_mean(comparison: Comparison) -> None:
     assert mean_differs(comparison) is None
 
 
+@pytest.mark.parametrize("comparison", [name for name in SAMPLES if name not in HEAVY_TAILS], indirect=True)
 def test_every_pixel(comparison: Comparison) -> None:
     z, report = worst_z(comparison)
     assert z < z_limit(comparison.ours.size), report

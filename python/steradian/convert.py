@@ -108,7 +108,8 @@ def convert(
     if converted is None:
         raise SceneError(report.strip(), found)
     for diagnostic in found:
-        warnings.warn(diagnostic.text, SceneWarning, stacklevel=2)
+        if diagnostic.severity == "warning":
+            warnings.warn(diagnostic.text, SceneWarning, stacklevel=2)
     return converted
 
 

@@ -132,7 +132,8 @@ def load(
     if loaded.scene is None:
         raise SceneError(loaded.report.strip(), loaded.diagnostics)
     for diagnostic in loaded.diagnostics:
-        warnings.warn(diagnostic.text, SceneWarning, stacklevel=2)
+        if diagnostic.severity == "warning":
+            warnings.warn(diagnostic.text, SceneWarning, stacklevel=2)
     return loaded.scene
 
 

@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 use sr_import::{LoadOptions, load_str};
 use sr_scene::{
     ColorInput, Crop, Diagnostics, FilterDesc, FovAxis, Geometry, LightDesc, MaterialDesc, MaterialId,
-    MicrofacetKind, Projection, Rgb, ScalarInput, SceneDesc, SphereMapping, TextureDesc,
+    MicrofacetKind, Projection, Rgb, ScalarInput, SceneDesc, Severity, SphereMapping, TextureDesc,
 };
 
 fn data() -> PathBuf {
@@ -17,9 +17,10 @@ fn read(text: &str) -> (Option<SceneDesc>, Diagnostics) {
     load_str("test.pbrt", text, &data(), &LoadOptions::default())
 }
 
-/// A scene about which there is nothing to say.
+/// A scene about which there is nothing to say but why its pictures differ from pbrt's.
 fn scene(text: &str) -> SceneDesc {
-    let (scene, diagnostics) = read(text);
+    let (scene, mut diagnostics) = read(text);
+    diagnostics.list.retain(|d| d.severity > Severity::Note);
     assert_eq!(diagnostics.render(false), "", "{text}");
     scene.unwrap()
 }
@@ -29,11 +30,15 @@ fn world(text: &str) -> SceneDesc {
     scene(&format!("Camera \"perspective\" WorldBegin {text}"))
 }
 
-/// The codes of all that is said about a world in front of a camera.
+/// The codes of what is wrong with a world in front of a camera.
 fn codes(text: &str) -> Vec<&'static str> {
+    codes_of(text, |severity| severity > Severity::Note)
+}
+
+fn codes_of(text: &str, is_meant: impl Fn(Severity) -> bool) -> Vec<&'static str> {
     let (scene, diagnostics) = read(&format!("Camera \"perspective\" WorldBegin {text}"));
     assert_eq!(scene.is_none(), diagnostics.has_errors(), "{text}");
-    diagnostics.list.iter().map(|d| d.code).collect()
+    diagnostics.list.iter().filter(|d| is_meant(d.severity)).map(|d| d.code).collect()
 }
 
 fn material(scene: &SceneDesc, id: MaterialId) -> &MaterialDesc {
@@ -241,6 +246,30 @@ fn many_parts_of_quadrics_become_coarse() {
 fn coats_that_cannot_be_are_said() {
     for text in ["\"float eta\" 0.5", "\"float thickness\" -5", "\"integer maxdepth\" 0"] {
         assert_eq!(codes(&format!("Material \"coateddiffuse\" {text}")), ["pbrt::bad-value"], "{text}");
+    }
+}
+
+/// Each reason once.
+#[test]
+fn why_pictures_differ_from_pbrt_s_is_noted() {
+    let noted = |materials: &[&str]| {
+        let text: String = materials.iter().map(|m| format!("Material {m} ")).collect();
+        codes_of(&text, |severity| severity == Severity::Note)
+    };
+    let red = "\"diffuse\" \"rgb reflectance\" [ 0.63 0.06 0.05 ]";
+    let gold = "\"conductor\" \"spectrum eta\" \"metal-Au-eta\" \"spectrum k\" \"metal-Au-k\"";
+    let coat = "\"coateddiffuse\" \"float roughness\" 0.2";
+    assert_eq!(noted(&[red, red]), ["pbrt::spectral-color"]);
+    assert_eq!(noted(&[gold, coat, gold]), ["pbrt::spectral-metal", "pbrt::layers"]);
+    assert_eq!(noted(&["\"coatedconductor\" \"rgb reflectance\" [ 0.5 0.5 0.5 ]"]), ["pbrt::layers"]);
+    for exact in [
+        "\"diffuse\" \"rgb reflectance\" [ 0.6 0.5 0.3 ]",
+        "\"diffuse\" \"rgb reflectance\" [ 0.1 0.01 0.01 ]",
+        "\"conductor\" \"rgb reflectance\" [ 0.9 0.8 0.6 ]",
+        "\"coateddiffuse\" \"float roughness\" 0",
+        "\"dielectric\"",
+    ] {
+        assert_eq!(noted(&[exact]), [""; 0], "{exact}");
     }
 }
 

@@ -21,13 +21,15 @@ pub struct Span {
 /// How bad it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
+    /// The scene is rendered as the file asks, as far as one renderer can agree with another.
+    Note,
     /// The scene is rendered, but not quite as the file asks.
     Warning,
     /// There is no scene.
     Error,
 }
 
-/// What becomes of what a warning is about.
+/// What becomes of what a note or a warning is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effect {
     /// Something else, or nearly the same, is shown instead.
@@ -92,14 +94,19 @@ impl Diagnostic {
         Self::new(Severity::Warning, code, span, message.into())
     }
 
-    /// What becomes of what a warning is about, by its consequence; `None` for an error.
+    /// A note: the scene is rendered as asked, but its pictures differ from those of the renderer that it was made for.
+    pub fn note(code: &'static str, span: &Span, message: impl Into<String>) -> Self {
+        Self::new(Severity::Note, code, span, message.into())
+    }
+
+    /// What becomes of what a note or a warning is about, by its consequence; `None` for an error.
     pub fn effect(&self) -> Option<Effect> {
         let consequence = self.consequence.as_deref().unwrap_or("");
         let is_ignored = IGNORED.iter().any(|words| consequence.contains(words));
         match self.severity {
             Severity::Error => None,
             Severity::Warning if is_ignored => Some(Effect::Ignored),
-            Severity::Warning => Some(Effect::Approximated),
+            Severity::Note | Severity::Warning => Some(Effect::Approximated),
         }
     }
 
@@ -222,6 +229,7 @@ impl Diagnostics {
 impl fmt::Display for Severity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
+            Severity::Note => "note",
             Severity::Warning => "warning",
             Severity::Error => "error",
         })

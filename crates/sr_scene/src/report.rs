@@ -70,6 +70,7 @@ impl Diagnostics {
 
     fn report(&self, diagnostic: &Diagnostic) -> Report<usize> {
         let level = match diagnostic.severity {
+            Severity::Note => Level::Note,
             Severity::Warning => Level::Warning,
             Severity::Error => Level::Error,
         };

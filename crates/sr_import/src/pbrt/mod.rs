@@ -146,6 +146,11 @@ impl<'d> Reader<'d> {
         notes.push(note);
     }
 
+    /// Says why pictures differ from pbrt's, once for each reason.
+    fn note(&mut self, code: &'static str, span: &Span, message: &str, consequence: &str) {
+        self.notes().push(Diagnostic::note(code, span, message).consequence(consequence));
+    }
+
     fn error(&mut self, code: &'static str, span: &Span, message: impl Into<String>) {
         self.notes().push(Diagnostic::error(code, span, message));
     }

@@ -22,7 +22,7 @@ pub struct Notes<'d> {
 impl Notes<'_> {
     /// Adds one, if its message is new. Of warnings there is an end.
     pub fn push(&mut self, diagnostic: Diagnostic) {
-        if self.is_full() && diagnostic.severity == Severity::Warning {
+        if self.is_full() && diagnostic.severity < Severity::Error {
             if !self.said.insert(String::new()) {
                 return;
             }

@@ -1,7 +1,7 @@
 //! What materials are made from: albedos, indices, roughness.
 
 use glam::DVec3;
-use sr_scene::{ColorInput, Rgb, ScalarInput};
+use sr_scene::{ColorInput, Rgb, ScalarInput, Span};
 
 use super::{Curve, FloatTexture, GREY, Params, Reader, is_smooth};
 use crate::pbrt::color::known;
@@ -16,10 +16,25 @@ impl Reader<'_> {
                     let message = format!("\"{name}\" of {} is above 1", params.title);
                     self.warn("pbrt::bad-value", &params.span, message, "1 is used there, as in pbrt");
                 }
+                self.note_saturated(color, &params.span);
                 ColorInput::Constant(color.min(Rgb::ONE))
             }
             Some(texture) => texture,
             None => ColorInput::Constant(default),
+        }
+    }
+
+    /// Says that light has a spectrum in pbrt, if that shows: a color reflects much of one primary and little of another.
+    fn note_saturated(&mut self, color: Rgb, span: &Span) {
+        if color.max_element() > 0.2 && color.min_element() < 0.2 * color.max_element() {
+            let message =
+                "light has a spectrum in pbrt, and is red, green and blue here: this color is saturated";
+            self.note(
+                "pbrt::spectral-color",
+                span,
+                message,
+                "light that bounces off it differs by some percent",
+            );
         }
     }
 
@@ -139,6 +154,9 @@ impl Reader<'_> {
         if let (Ok(Some(eta)), Ok(Some(k))) = (&eta, &k)
             && let (Some(eta), Some(k)) = (eta.spectrum(space), k.spectrum(space))
         {
+            let message =
+                "light has a spectrum in pbrt, and is red, green and blue here: so is what metals reflect";
+            self.note("pbrt::spectral-metal", &params.span, message, "at an angle it differs by up to 1 %");
             let (eta, k) = sr_spectra::metal(eta, k, above.into());
             let constant = |color: DVec3| ColorInput::Constant(color.as_vec3());
             return (Some((constant(eta), constant(k))), one);

@@ -163,6 +163,9 @@ impl Reader<'_> {
         let eta = self.coat_eta(params, "eta");
         let layer = self.layer(params, eta);
         let alpha = self.constant_alpha(alpha, params);
+        if alpha.is_some() {
+            self.note_layers(params);
+        }
         let diffuse_reflectance = self.base_albedo(params, layer, alpha);
         let specular_reflectance = ColorInput::Constant(Rgb::ONE);
         match alpha {
@@ -189,6 +192,7 @@ impl Reader<'_> {
         let metal = self.alpha(params, metal, 0.0);
         let eta = self.coat_eta(params, "interface.eta");
         let layer = self.layer(params, eta);
+        self.note_layers(params);
         let (eta_k, specular_reflectance) = self.complex_index(params, ["conductor.eta", "conductor.k"], eta);
         MaterialDesc::CoatedConductor {
             kind: MicrofacetKind::GgxCorrelated,
