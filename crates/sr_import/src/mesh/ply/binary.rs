@@ -6,6 +6,7 @@
 //! them are read side by side.
 
 use std::io::Read;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::{Vec2, Vec3};
 use ply_rs_bw::ply::{ElementDef, PropertyType, ScalarType};
@@ -312,17 +313,18 @@ impl Record {
         let triangle = |face: &[u8]| {
             if is_triangle(face) { Some([index(face, 0)?, index(face, 1)?, index(face, 2)?]) } else { None }
         };
-        let before = triangles.len();
-        triangles.resize(before + bytes.len() / self.size, [0; 3]);
-        let sound = bytes
-            .par_chunks_exact(self.size)
-            .zip(&mut triangles[before..])
-            .with_min_len(1 << 14)
-            .try_for_each(|(face, into)| triangle(face).map(|corners| *into = corners));
-        if sound.is_none() {
+        let (before, sound) = (triangles.len(), AtomicBool::new(true));
+        triangles.par_extend(bytes.par_chunks_exact(self.size).with_min_len(1 << 14).map(|face| {
+            triangle(face).unwrap_or_else(|| {
+                sound.store(false, Ordering::Relaxed);
+                [0; 3]
+            })
+        }));
+        let sound = sound.into_inner();
+        if !sound {
             triangles.truncate(before);
         }
-        sound.is_some()
+        sound
     }
 }
 
