@@ -34,8 +34,8 @@ from steradian.scene import load_with_diagnostics
 class Case(NamedTuple):
     """A scene, how many samples a pixel gets, and what may differ.
 
-    ``mean``: relative difference of the image's mean that is granted whatever the noise. ``differs``: the code
-    of what loading says about why pixels differ; if there is none, they are compared.
+    ``mean``: relative difference of the image's mean that is granted whatever the noise. ``differs``: the
+    code of what loading says about why pixels differ; if there is none, they are compared.
     """
 
     file: str
@@ -79,7 +79,10 @@ CASES = {
     # pbrt-v4 evaluates rough coats 3 to 13 % too bright: the weights of its two ways to leave the coat do not
     # add up to one.
     "killeroo-simple": Case(
-        "killeroos/killeroo-simple.pbrt", "killeroos/killeroo-simple.reference.pbrt", 64, differs="pbrt::layers"
+        "killeroos/killeroo-simple.pbrt",
+        "killeroos/killeroo-simple.reference.pbrt",
+        64,
+        differs="pbrt::layers",
     ),
     # Light bounces off much wood: RGB for spectra.
     "staircase": Case("staircase/scene.pbrt", "staircase/reference.pbrt", 64, mean=0.02),

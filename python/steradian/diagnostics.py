@@ -11,8 +11,8 @@ class Diagnostic:
     """One thing to tell the user."""
 
     severity: str
-    """``"note"`` (rendered as asked, but not quite as the renderer that the file is for does it), ``"warning"``
-    (rendered, but not quite as asked) or ``"error"`` (no scene)."""
+    """``"note"`` (rendered as asked, but not quite as the renderer does it that the file is for),
+    ``"warning"`` (rendered, but not quite as asked) or ``"error"`` (no scene)."""
     code: str
     """A stable name, such as ``mitsuba::unknown-property``."""
     message: str
