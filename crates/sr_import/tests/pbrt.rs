@@ -243,6 +243,13 @@ fn many_parts_of_quadrics_become_coarse() {
 }
 
 #[test]
+fn negative_roughness_and_indices_are_said() {
+    for text in ["\"float roughness\" -0.1", "\"rgb eta\" [ -1 1 1 ]", "\"rgb k\" [ 3 -3 3 ]"] {
+        assert_eq!(codes(&format!("Material \"conductor\" {text}")), ["pbrt::bad-value"], "{text}");
+    }
+}
+
+#[test]
 fn coats_that_cannot_be_are_said() {
     for text in ["\"float eta\" 0.5", "\"float thickness\" -5", "\"integer maxdepth\" 0"] {
         assert_eq!(codes(&format!("Material \"coateddiffuse\" {text}")), ["pbrt::bad-value"], "{text}");

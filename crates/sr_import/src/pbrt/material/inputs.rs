@@ -47,7 +47,7 @@ impl Reader<'_> {
         };
         if textured {
             let message = format!("\"{name}\" of {} cannot be a texture", params.title);
-            self.warn("pbrt::texture-not-possible", &params.span, message, "1.5 is used");
+            self.warn("pbrt::texture-not-possible", &params.span, message, &format!("{default} is used"));
             return default;
         }
         let Some((span, curve)) = self.curve(params, name) else { return default };
@@ -84,6 +84,12 @@ impl Reader<'_> {
         [names[0], names[1]]
             .map(|name| {
                 let own = self.float_or_texture(params, name).unwrap_or_else(|| both.clone());
+                if let FloatTexture::Constant(roughness) = own
+                    && roughness < 0.0
+                {
+                    let message = format!("a roughness of {roughness} of {}", params.title);
+                    self.warn("pbrt::bad-value", &span, message, "0 is used");
+                }
                 match remap {
                     true => self.as_root(own, &span),
                     false => self.as_scalar(own),
@@ -147,7 +153,16 @@ impl Reader<'_> {
         }
         let mut input = |name, default: &str| match self.textured(params, name) {
             Some(texture) => Err(texture),
-            None => Ok(self.curve(params, name).map(|(_, curve)| curve).or_else(|| known(default))),
+            None => {
+                let curve = self.curve(params, name).map(|(_, curve)| curve);
+                if let Some(Curve::Rgb(color)) = curve
+                    && color.min_element() < 0.0
+                {
+                    let message = format!("negative parts of \"{name}\" of {}", params.title);
+                    self.warn("pbrt::bad-value", &params.span, message, "0 is used there");
+                }
+                Ok(curve.or_else(|| known(default)))
+            }
         };
         let (eta, k) = (input(eta, "metal-Cu-eta"), input(k, "metal-Cu-k"));
         let space = self.state.color_space;
