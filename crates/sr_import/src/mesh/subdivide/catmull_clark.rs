@@ -3,6 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use super::topology::{Edges, Rings, Surface};
 use super::{Limit, mean};
@@ -77,6 +78,7 @@ pub fn limit(surface: &Surface, edges: &Edges) -> Limit {
         (n * n * old[i] + 4.0 * around[i].neighbours + opposite[i]) / (n * (n + 5.0))
     };
     let positions = (0..old.len())
+        .into_par_iter()
         .map(|i| around[i].boundary_rule(old[i], 1.0 / 6.0).unwrap_or_else(|| inner(i)))
         .collect();
     let normal = |i: usize| {
@@ -93,6 +95,6 @@ pub fn limit(surface: &Surface, edges: &Edges) -> Limit {
         }
         Some(along.cross(across))
     };
-    let normals = (0..old.len()).map(|i| normal(i).unwrap_or(DVec3::ZERO)).collect();
+    let normals = (0..old.len()).into_par_iter().map(|i| normal(i).unwrap_or(DVec3::ZERO)).collect();
     Limit { positions, normals }
 }

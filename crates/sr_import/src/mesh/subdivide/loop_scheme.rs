@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use super::topology::{Edges, Rings, Surface};
 use super::{Limit, mean};
@@ -73,6 +74,7 @@ pub fn limit(surface: &Surface, edges: &Edges) -> Limit {
         (1.0 - n * gamma) * old[i] + gamma * around[i].neighbours
     };
     let positions = (0..old.len())
+        .into_par_iter()
         .map(|i| around[i].boundary_rule(old[i], 1.0 / 6.0).unwrap_or_else(|| inner(i)))
         .collect();
     let normal = |i: usize| {
@@ -85,6 +87,6 @@ pub fn limit(surface: &Surface, edges: &Edges) -> Limit {
         }
         Some(along.cross(across))
     };
-    let normals = (0..old.len()).map(|i| normal(i).unwrap_or(DVec3::ZERO)).collect();
+    let normals = (0..old.len()).into_par_iter().map(|i| normal(i).unwrap_or(DVec3::ZERO)).collect();
     Limit { positions, normals }
 }
