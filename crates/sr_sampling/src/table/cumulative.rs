@@ -79,6 +79,12 @@ fn picked(cumulative: &[u32], at: f64, index: usize) -> Picked {
     Picked { index, pmf: share * STEP, rest: (at - f64::from(low)) / share }
 }
 
+/// How many entries [`pick_from`] compares at a time.
+const WINDOW: usize = 8;
+
+/// What must follow a table that [`pick_from`] is to search: more than any uniform.
+pub const PADDING: [u32; WINDOW - 1] = [u32::MAX; WINDOW - 1];
+
 /// The logarithm of the number of cuts that guide a table of `len` entries: about one for every four.
 pub fn guide_bits(len: usize) -> u32 {
     len.div_ceil(4).next_power_of_two().trailing_zeros()
@@ -105,21 +111,26 @@ pub fn cut(bits: u32, u: f32) -> usize {
     (to_step(u) as u32 >> (TOTAL.trailing_zeros() - bits)) as usize
 }
 
-/// [`pick`], with the table's guide of 2ᵇ cuts: two steps on average, whatever the weights.
+/// [`pick`], with the table's guide of 2ᵇ cuts, in a padded table: two entries on average, whatever the weights.
 #[inline(always)]
 pub fn pick_guided(cumulative: &[u32], guide: &[u16], bits: u32, u: f32) -> Picked {
     pick_from(cumulative, usize::from(guide[cut(bits, u)]), u)
 }
 
-/// [`pick`], from an entry on that is not beyond it.
+/// [`pick`], from an entry on that is not beyond it, in a table with its [`PADDING`].
 #[inline(always)]
 pub fn pick_from(cumulative: &[u32], first: usize, u: f32) -> Picked {
     let (at, mut index) = (to_step(u), first);
     let step = at as u32;
-    while cumulative[index + 1] <= step {
-        index += 1;
+    // How far it is differs from draw to draw, so that a branch at each entry would be guessed wrongly.
+    loop {
+        let window = &cumulative[index + 1..index + 1 + WINDOW];
+        let passed = window.iter().map(|&c| u32::from(c <= step)).sum::<u32>() as usize;
+        index += passed;
+        if passed < WINDOW {
+            return picked(cumulative, at, index);
+        }
     }
-    picked(cumulative, at, index)
 }
 
 /// The probability of an entry.
@@ -174,9 +185,10 @@ mod tests {
             let table = cumulative(&weights);
             let mut guide = vec![0; 1 << guide_bits(len)];
             fill_guide(&table, &mut guide);
+            let searched = [&table[..], &PADDING].concat();
             for u in (0..4096).map(|i| i as f32 / 4096.0).chain([1.0 - f32::EPSILON / 2.0]) {
                 assert_eq!(
-                    pick_guided(&table, &guide, guide_bits(len), u),
+                    pick_guided(&searched, &guide, guide_bits(len), u),
                     pick(&table, u),
                     "{len} entries, {u}"
                 );

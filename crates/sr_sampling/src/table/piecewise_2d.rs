@@ -3,7 +3,7 @@
 use glam::Vec2;
 
 use super::TableError;
-use super::cumulative::{self, Picked};
+use super::cumulative::{self, PADDING, Picked};
 use crate::distribution::{Distribution, Invert, Sample};
 use crate::measure::Plane;
 use crate::prefetch;
@@ -15,9 +15,10 @@ use crate::prefetch;
 #[derive(Clone, Debug)]
 pub struct PiecewiseConstant2D {
     width: usize,
-    /// Cumulative probabilities of the rows.
+    height: usize,
+    /// Cumulative probabilities of the rows, with their padding.
     rows: Vec<u32>,
-    /// Of the columns, given the row: `width + 1` numbers for each.
+    /// Of the columns, given the row: `width + 1` numbers and their padding for each.
     columns: Vec<u32>,
     /// Where to look for a uniform in `rows`, and in each row of `columns`: 2ᵇ cuts of [0, 1).
     guide_bits: [u32; 2],
@@ -67,25 +68,27 @@ impl PiecewiseConstant2D {
         if sum == 0.0 {
             return Err(TableError::AllZero { len: values.len() });
         }
-        let mut rows = vec![0; sums.len() + 1];
+        let height = sums.len();
+        let mut rows = vec![0; height + 1];
         cumulative::fill(sums.iter().copied(), sum, &mut rows);
-        let mut columns = vec![0; sums.len() * (width + 1)];
-        for ((row, &row_sum), out) in
-            values.chunks_exact(width).zip(&sums).zip(columns.chunks_exact_mut(width + 1))
-        {
-            cumulative::fill(row.iter().map(|&v| f64::from(v)), row_sum, out);
-        }
-        let guide_bits = [sums.len(), width].map(cumulative::guide_bits);
+        let guide_bits = [height, width].map(cumulative::guide_bits);
         let [row_guide_len, column_guide_len] = guide_bits.map(|bits| 1 << bits);
         let mut row_guide = vec![0; row_guide_len];
         cumulative::fill_guide(&rows, &mut row_guide);
-        let mut column_guides = vec![0; sums.len() * column_guide_len];
-        for (row, guide) in
-            columns.chunks_exact(width + 1).zip(column_guides.chunks_exact_mut(column_guide_len))
+        rows.extend(PADDING);
+        let mut columns = Vec::with_capacity(height * stride(width));
+        let mut column_guides = vec![0; height * column_guide_len];
+        for ((values, &sum), guide) in
+            values.chunks_exact(width).zip(&sums).zip(column_guides.chunks_exact_mut(column_guide_len))
         {
+            let start = columns.len();
+            columns.resize(start + width + 1, 0);
+            let row = &mut columns[start..];
+            cumulative::fill(values.iter().map(|&v| f64::from(v)), sum, row);
             cumulative::fill_guide(row, guide);
+            columns.extend(PADDING);
         }
-        Ok(Self { width, rows, columns, guide_bits, row_guide, column_guides })
+        Ok(Self { width, height, rows, columns, guide_bits, row_guide, column_guides })
     }
 
     /// The number of columns.
@@ -95,7 +98,7 @@ impl PiecewiseConstant2D {
 
     /// The number of rows.
     pub fn height(&self) -> usize {
-        self.rows.len() - 1
+        self.height
     }
 
     /// The first of three steps of [`Distribution::sample`]. Each asks for the memory that the next reads, so that
@@ -114,19 +117,21 @@ impl PiecewiseConstant2D {
         let [_, bits] = self.guide_bits;
         let guide = &self.column_guides[draw.row.index << bits..];
         draw.column = usize::from(guide[cumulative::cut(bits, u.x)]);
-        prefetch(&self.columns[draw.row.index * (self.width + 1) + draw.column]);
+        let first = draw.row.index * stride(self.width) + draw.column;
+        prefetch(&self.columns[first]);
+        prefetch(&self.columns[first + PADDING.len()]);
     }
 
     /// The third step.
     #[inline(always)]
     pub fn finish(&self, Draw2D { row, column }: Draw2D, u: Vec2) -> Sample<Plane> {
-        let x = cumulative::pick_from(&self.columns[row.index * (self.width + 1)..], column, u.x);
+        let x = cumulative::pick_from(&self.columns[row.index * stride(self.width)..], column, u.x);
         let value = Vec2::new(place(x.index, x.rest, self.width), place(row.index, row.rest, self.height()));
         Sample { value, pdf: (x.pmf * row.pmf * self.cells()) as f32 }
     }
 
     fn row(&self, y: usize) -> &[u32] {
-        &self.columns[y * (self.width + 1)..(y + 1) * (self.width + 1)]
+        &self.columns[y * stride(self.width)..][..=self.width]
     }
 
     /// Cells per unit of area.
@@ -143,6 +148,12 @@ impl PiecewiseConstant2D {
         };
         Some([along(x.x, self.width)?, along(x.y, self.height())?])
     }
+}
+
+/// From row to row of cumulative probabilities.
+#[inline(always)]
+fn stride(width: usize) -> usize {
+    width + 1 + PADDING.len()
 }
 
 /// A coordinate in cell `cell` of `n`: rounding must not push it into the next one.
