@@ -12,7 +12,7 @@ use glam::{Vec2, Vec3};
 use sr_sampling::warp::unit_circle;
 use sr_scene::{Image, Pixels, Rgb, SphereMapping};
 
-use crate::texture::{bilinear, luminance, prefetch_texel, texel, to_cell};
+use crate::texture::{Cells, bilinear, luminance, prefetch_texel, texel, to_cell};
 
 /// Brighter than any light, and dim enough for sums of it to be finite.
 const BRIGHTEST: f32 = 1e30;
@@ -72,7 +72,7 @@ impl SphereImage {
         let color = match self.mapping {
             SphereMapping::LatLong => {
                 let (columns, rows) = ([self.column(x), self.column(x + 1)], [self.row(y), self.row(y + 1)]);
-                bilinear(&self.image, self.srgb, columns, rows, t)
+                bilinear(&self.image, self.srgb, &Cells { columns, rows, t })
             }
             SphereMapping::EqualAreaOctahedral => {
                 let row = |y: i32| self.wrapped(x, y).lerp(self.wrapped(x + 1, y), t.x);

@@ -6,7 +6,7 @@ use sr_scene::{ColorInput, MaterialDesc, MaterialId, Rgb, ScalarInput};
 use super::kind::Kind;
 use super::parts::{Factor, ModelSource, NormalSource, PartSource, Parts, StepSource, TiltSource};
 use super::tables::{MAX_TABLES, Orders, Tables};
-use super::{Face, Inputs, Materials, Queue, Side, Sources};
+use super::{Face, Materials, Queue, Side, Sources};
 
 /// More in one material than is done.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -180,19 +180,9 @@ impl Materials {
         } else {
             Queue::of_kind(kind)
         };
-        let opacity = opacity.unwrap_or(ScalarInput::Constant(1.0));
-        let (constant, is_textured) = constants(&sources, opacity);
+        let (constant, textured) = sources.split(opacity.unwrap_or(ScalarInput::Constant(1.0)));
         let (parts, has_holes) = (0..0, false);
-        self.sides.push(Side {
-            kind: Some(kind),
-            sources,
-            opacity,
-            constant,
-            parts,
-            has_holes,
-            is_textured,
-            needs_tangents,
-        });
+        self.sides.push(Side { kind: Some(kind), constant, textured, parts, has_holes, needs_tangents });
         let (albedo, has_picture) = match sources.colors[0] {
             ColorInput::Constant(albedo) => (albedo, false),
             ColorInput::Texture(_) => (Rgb::ZERO, queue == Queue::LAMBERT),
@@ -226,18 +216,9 @@ impl Materials {
                 model,
             });
         }
-        let nothing = Sources::new(&[], &[]);
-        let opacity = ScalarInput::Constant(1.0);
-        self.sides.push(Side {
-            kind: None,
-            sources: nothing,
-            opacity,
-            constant: constants(&nothing, opacity).0,
-            parts: first..self.parts.parts.len(),
-            has_holes: side.has_holes,
-            is_textured: false,
-            needs_tangents,
-        });
+        let (constant, textured) = Sources::new(&[], &[]).split(ScalarInput::Constant(1.0));
+        let (parts, has_holes) = (first..self.parts.parts.len(), side.has_holes);
+        self.sides.push(Side { kind: None, constant, textured, parts, has_holes, needs_tangents });
         let side = self.sides.len() as u32 - 1;
         Ok(Face { side, queue: Queue::SINGLE, turn: 1.0, albedo: Rgb::ZERO, has_picture: false })
     }
@@ -281,27 +262,6 @@ impl Materials {
             ref plain => self.model_source(plain, orders).into(),
         }
     }
-}
-
-/// The inputs, those that are textured being 0, and whether there are such.
-fn constants(sources: &Sources, opacity: ScalarInput) -> (Inputs, bool) {
-    let color = |color| match color {
-        ColorInput::Constant(color) => Some(color),
-        ColorInput::Texture(_) => None,
-    };
-    let scalar = |scalar| match scalar {
-        ScalarInput::Constant(scalar) => Some(scalar),
-        ScalarInput::Texture(_) => None,
-    };
-    let (colors, scalars, opacity) =
-        (sources.colors.map(color), sources.scalars.map(scalar), scalar(opacity));
-    let is_textured = colors.contains(&None) || scalars.contains(&None) || opacity.is_none();
-    let constant = Inputs {
-        colors: colors.map(Option::unwrap_or_default),
-        scalars: scalars.map(Option::unwrap_or_default),
-        opacity: opacity.unwrap_or_default(),
-    };
-    (constant, is_textured)
 }
 
 fn is_anisotropic(kinds: &[Kind], kind: u32, sources: &Sources) -> bool {

@@ -9,7 +9,7 @@ use sr_bsdf::{
     ThinDielectric,
 };
 
-use super::Materials;
+use super::{COLORS, Inputs, Materials};
 
 /// What tells models apart besides their inputs. The comments name the inputs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,20 +30,6 @@ pub(super) enum Kind {
     Plastic { coat: SmoothCoat, nonlinear: bool },
     /// Reflectance of the base and of the coating.
     RoughPlastic { coat: u32, nonlinear: bool },
-}
-
-/// The most colours that a model takes.
-pub(crate) const COLORS: usize = 3;
-/// The most numbers that a model takes.
-pub(crate) const SCALARS: usize = 3;
-
-/// What a model is made from.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Inputs {
-    pub colors: [Rgb; COLORS],
-    pub scalars: [f32; SCALARS],
-    /// How much of the surface is there: no part of the model.
-    pub opacity: f32,
 }
 
 /// Makes models of one kind.

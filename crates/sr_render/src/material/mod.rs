@@ -7,6 +7,7 @@
 //! Everything else (`parts`: uncommon models, blends, tilted normals, holes in holes) is made and asked one by one.
 
 mod flatten;
+mod inputs;
 mod kind;
 mod model;
 mod parts;
@@ -16,12 +17,14 @@ mod uncommon;
 use std::ops::Range;
 
 use sr_bsdf::{AnyBsdf, AnyModel, Blend, Mask, RoughCoat};
-use sr_scene::{ColorInput, MaterialId, Rgb, ScalarInput};
+use sr_scene::{MaterialId, Rgb};
 
 use crate::texture::{TexturePoint, Textures};
 pub use flatten::MaterialError;
+use inputs::Sources;
+pub(crate) use inputs::{COLORS, Input, Inputs, SCALARS, Textured};
 use kind::Kind;
-pub(crate) use kind::{COLORS, Inputs, Recipe, RecipeUser, SCALARS};
+pub(crate) use kind::{Recipe, RecipeUser};
 use parts::Parts;
 pub(crate) use parts::Place;
 use tables::Tables;
@@ -56,25 +59,16 @@ pub(crate) struct Face {
 pub(crate) struct Side {
     /// Of a model of a common kind; `None` for parts.
     kind: Option<u32>,
-    sources: Sources,
-    opacity: ScalarInput,
-    /// All of them, if none is textured.
-    constant: Inputs,
+    /// Its inputs, as far as they are the same everywhere.
+    pub constant: Inputs,
+    /// Those that textures have.
+    pub textured: Box<[Textured]>,
     /// Which parts it has, if that is what it has; perhaps none, where all is a hole.
     parts: Range<usize>,
     /// Do the parts leave holes?
     has_holes: bool,
-    /// Does a colour or number of a model of a common kind depend on texture coordinates?
-    pub is_textured: bool,
     /// Does a model or a tilt tell the tangent from the bitangent?
     pub needs_tangents: bool,
-}
-
-/// Where the colours and numbers of a model of a common kind come from.
-#[derive(Clone, Copy, Debug)]
-struct Sources {
-    colors: [ColorInput; COLORS],
-    scalars: [ScalarInput; SCALARS],
 }
 
 /// Which loop serves a side.
@@ -149,45 +143,12 @@ impl RecipeUser for MakeAny {
 }
 
 impl Side {
-    /// The colours and numbers of the model at a point. Those that it does not take are 0.
-    #[inline(always)]
+    /// The colours and numbers of the model at a point.
     pub(crate) fn inputs(&self, at: &TexturePoint, textures: &Textures) -> Inputs {
-        if self.is_textured { self.sources.look_up(self.opacity, at, textures) } else { self.constant }
-    }
-
-    /// Asks for the memory that [`Self::inputs`] or [`Self::reflectance`] will read.
-    #[inline(always)]
-    pub(crate) fn prefetch(&self, at: &TexturePoint, textures: &Textures) {
-        if self.is_textured {
-            self.sources.prefetch(self.opacity, at, textures);
+        let mut inputs = self.constant;
+        for &Textured { input, texture } in &self.textured {
+            inputs.set(input, textures.lookup(texture, at));
         }
-    }
-
-    /// The reflectance of a side of [`Queue::LAMBERT`].
-    #[inline(always)]
-    pub(crate) fn reflectance(&self, at: &TexturePoint, textures: &Textures) -> Rgb {
-        textures.color(self.sources.colors[0], *at)
-    }
-}
-
-impl Sources {
-    #[inline(never)]
-    fn prefetch(&self, opacity: ScalarInput, at: &TexturePoint, textures: &Textures) {
-        for &color in &self.colors {
-            textures.prefetch(color, at);
-        }
-        for &scalar in &self.scalars {
-            textures.prefetch_scalar(scalar, at);
-        }
-        textures.prefetch_scalar(opacity, at);
-    }
-
-    #[inline(never)]
-    fn look_up(&self, opacity: ScalarInput, at: &TexturePoint, textures: &Textures) -> Inputs {
-        Inputs {
-            colors: self.colors.map(|color| textures.color(color, *at)),
-            scalars: self.scalars.map(|scalar| textures.scalar(scalar, *at)),
-            opacity: textures.scalar(opacity, *at),
-        }
+        inputs
     }
 }

@@ -3,24 +3,11 @@
 use sr_bsdf::{MicrofacetKind, SmoothCoat};
 use sr_scene::{ColorInput, MaterialDesc, Rgb, ScalarInput};
 
-use super::kind::{COLORS, Kind, SCALARS};
+use super::kind::Kind;
 use super::parts::ModelSource;
 use super::tables::Orders;
 use super::uncommon::Uncommon;
-use super::{Materials, Sources};
-
-impl Sources {
-    /// Those beyond what is given are 0.
-    pub(super) fn new(colors: &[ColorInput], scalars: &[ScalarInput]) -> Self {
-        let mut sources = Self {
-            colors: [ColorInput::Constant(Rgb::ZERO); COLORS],
-            scalars: [ScalarInput::Constant(0.0); SCALARS],
-        };
-        sources.colors[..colors.len()].copy_from_slice(colors);
-        sources.scalars[..scalars.len()].copy_from_slice(scalars);
-        sources
-    }
-}
+use super::{COLORS, Materials, Sources};
 
 impl Materials {
     /// What a description that nests nothing is made from.

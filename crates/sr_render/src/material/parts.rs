@@ -164,7 +164,7 @@ impl Materials {
     fn model(&self, source: &ModelSource, place: &Place) -> AnyModel<'_> {
         match source {
             ModelSource::Common { kind, sources } => {
-                let inputs = sources.look_up(ScalarInput::Constant(1.0), &place.at, place.textures);
+                let inputs = sources.look_up(&place.at, place.textures);
                 self.with_recipe(*kind, MakeAny { inputs })
             }
             ModelSource::Uncommon(uncommon) => uncommon.model(place, &self.tables),

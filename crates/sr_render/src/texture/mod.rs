@@ -4,6 +4,7 @@
 //! [`ScalarInput`] is looked up in at a [`TexturePoint`]. A lookup is at a point, except in textures whose filter is
 //! [`Filter::Mipmap`].
 
+mod cells;
 mod mip;
 mod point;
 mod texel;
@@ -16,11 +17,12 @@ use sr_scene::{
     Wrap,
 };
 
+use cells::nearest;
+pub(crate) use cells::{Cells, to_cell};
 use mip::Pyramid;
 pub(crate) use point::{FurtherUvs, MeshColors, footprint};
 pub use point::{RayCone, TexturePoint};
-use texel::wrapped;
-pub(crate) use texel::{bilinear, prefetch_texel, texel, to_cell};
+pub(crate) use texel::{bilinear, prefetch_texel, texel};
 
 /// Luminance of linear sRGB (ITU-R BT.709).
 #[inline]
@@ -115,50 +117,69 @@ impl Textures {
         }
     }
 
-    /// Asks for the memory that a lookup of a colour at a point will read, if it is an image's.
+    /// The first of two steps of [`Self::lookup`]: asks for the memory that the second reads, so that whoever looks up
+    /// at many points takes each step for all before the next. Large images are not in caches.
     #[inline(always)]
-    pub(crate) fn prefetch(&self, input: ColorInput, at: &TexturePoint) {
-        if let ColorInput::Texture(id) = input {
-            self.prefetch_texture(id, at);
+    pub(crate) fn begin(&self, TextureId(id): TextureId, at: &TexturePoint) -> Cells {
+        match &self.textures[id as usize] {
+            Texture::Bitmap { image, wrap, to_uv, .. } => self.prefetch_image(*image, *wrap, to_uv, at.uv),
+            _ => {
+                self.prefetch_composite(TextureId(id), at);
+                Cells::NONE
+            }
         }
     }
 
-    /// The same for a scalar.
+    /// The second step.
     #[inline(always)]
-    pub(crate) fn prefetch_scalar(&self, input: ScalarInput, at: &TexturePoint) {
-        if let ScalarInput::Texture(id) = input {
-            self.prefetch_texture(id, at);
+    pub(crate) fn finish(&self, id: TextureId, cells: &Cells, at: &TexturePoint) -> Rgb {
+        match &self.textures[id.0 as usize] {
+            Texture::Bitmap { image, filter: Filter::Bilinear, srgb, .. } => {
+                bilinear(&self.images[*image as usize], *srgb, cells)
+            }
+            _ => self.lookup(id, at),
         }
     }
 
+    #[inline(always)]
+    fn prefetch_image(&self, image: u32, wrap: Wrap, to_uv: &Affine2, uv: Vec2) -> Cells {
+        let image = &self.images[image as usize];
+        let cells = Cells::around(image, wrap, to_uv.transform_point2(uv));
+        for y in cells.rows {
+            prefetch_texel(image, cells.columns[0], y);
+        }
+        cells
+    }
+
+    /// Of what is less common.
     #[inline(never)]
-    fn prefetch_texture(&self, TextureId(id): TextureId, at: &TexturePoint) {
-        let of_image = |image: u32, wrap: Wrap, to_uv: &Affine2| {
-            let image = &self.images[image as usize];
-            let size = Vec2::new(image.width as f32, image.height as f32);
-            let at = to_uv.transform_point2(at.uv) * size - 0.5;
-            let (x, y) = (wrapped(to_cell(at.x), image.width, wrap), to_cell(at.y));
-            for y in [wrapped(y, image.height, wrap), wrapped(y + 1, image.height, wrap)] {
-                prefetch_texel(image, x, y);
+    fn prefetch_composite(&self, TextureId(id): TextureId, at: &TexturePoint) {
+        let color = |input, at: &TexturePoint| {
+            if let ColorInput::Texture(id) = input {
+                self.begin(id, at);
             }
         };
         match &self.textures[id as usize] {
-            Texture::Bitmap { image, wrap, to_uv, .. } => of_image(*image, *wrap, to_uv),
             // further copies are small
             Texture::Mipmap { image, wrap, to_uv, .. } if at.footprint == 0.0 => {
-                of_image(*image, *wrap, to_uv)
+                self.prefetch_image(*image, *wrap, to_uv, at.uv);
             }
             &Texture::Scale([a, b]) => {
-                self.prefetch(a, at);
-                self.prefetch(b, at);
+                color(a, at);
+                color(b, at);
             }
             &Texture::Mix { colors: [a, b], weight } => {
-                self.prefetch(a, at);
-                self.prefetch(b, at);
-                self.prefetch_scalar(weight, at);
+                color(a, at);
+                color(b, at);
+                if let ScalarInput::Texture(id) = weight {
+                    self.begin(id, at);
+                }
             }
-            &Texture::OtherUvs { color, set } => self.prefetch(color, &at.at_set(set)),
-            Texture::Mipmap { .. } | Texture::Checkerboard { .. } | Texture::MeshColor { .. } => {}
+            &Texture::OtherUvs { color: input, set } => color(input, &at.at_set(set)),
+            Texture::Bitmap { .. }
+            | Texture::Mipmap { .. }
+            | Texture::Checkerboard { .. }
+            | Texture::MeshColor { .. } => {}
         }
     }
 
@@ -291,7 +312,7 @@ impl Textures {
 
     /// Not inlined: many places ask for it, and it has no loop to be part of.
     #[inline(never)]
-    fn lookup(&self, id: TextureId, at: &TexturePoint) -> Rgb {
+    pub(crate) fn lookup(&self, id: TextureId, at: &TexturePoint) -> Rgb {
         match &self.textures[id.0 as usize] {
             Texture::Bitmap { image, filter, wrap, srgb, to_uv } => {
                 let image = &self.images[*image as usize];
@@ -339,31 +360,20 @@ impl Textures {
 /// An image at a texture coordinate.
 #[inline(always)]
 fn filtered(image: &Image, (filter, wrap, srgb): (Filter, Wrap, bool), uv: Vec2) -> Rgb {
-    let at = uv * Vec2::new(image.width as f32, image.height as f32);
-    let column = |x: i32| wrapped(x, image.width, wrap);
-    let row = |y: i32| wrapped(y, image.height, wrap);
     match filter {
-        Filter::Nearest => texel(image, srgb, column(to_cell(at.x)), row(to_cell(at.y))),
-        Filter::Bilinear | Filter::Mipmap => {
-            let at = at - 0.5;
-            let (x, y) = (to_cell(at.x), to_cell(at.y));
-            // Within the cell also where the cell was kept away from the ends.
-            let t = (at - Vec2::new(x as f32, y as f32)).clamp(Vec2::ZERO, Vec2::ONE);
-            bilinear(image, srgb, [column(x), column(x + 1)], [row(y), row(y + 1)], t)
+        Filter::Nearest => {
+            let [x, y] = nearest(image, wrap, uv);
+            texel(image, srgb, x, y)
         }
+        Filter::Bilinear | Filter::Mipmap => bilinear(image, srgb, &Cells::around(image, wrap, uv)),
     }
 }
 
 /// The gradient of the luminance between four texels, with respect to the coordinates of the unit square.
 fn bilinear_slope(image: &Image, (wrap, srgb): (Wrap, bool), uv: Vec2) -> Vec2 {
     let size = Vec2::new(image.width as f32, image.height as f32);
-    let at = uv * size - 0.5;
-    let (x, y) = (to_cell(at.x), to_cell(at.y));
-    let t = (at - Vec2::new(x as f32, y as f32)).clamp(Vec2::ZERO, Vec2::ONE);
-    let height = |i: i32, j: i32| {
-        let (column, row) = (wrapped(x + i, image.width, wrap), wrapped(y + j, image.height, wrap));
-        luminance(texel(image, srgb, column, row))
-    };
+    let Cells { columns, rows, t } = Cells::around(image, wrap, uv);
+    let height = |i: usize, j: usize| luminance(texel(image, srgb, columns[i], rows[j]));
     let [a, b, c, d] = [height(0, 0), height(1, 0), height(0, 1), height(1, 1)];
     let mix = |low: f32, high: f32, t: f32| low + t * (high - low);
     size * Vec2::new(mix(b - a, d - c, t.y), mix(c - a, d - b, t.x))

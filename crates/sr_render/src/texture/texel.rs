@@ -2,9 +2,10 @@
 
 use std::sync::LazyLock;
 
-use glam::Vec2;
 use sr_sampling::prefetch;
-use sr_scene::{Image, Pixels, Rgb, Wrap};
+use sr_scene::{Image, Pixels, Rgb};
+
+use super::Cells;
 
 /// What 8-bit codes mean: of linear images, and of those encoded as sRGB (IEC 61966-2-1).
 pub(super) static DECODED: LazyLock<[[f32; 256]; 2]> = LazyLock::new(|| {
@@ -14,33 +15,6 @@ pub(super) static DECODED: LazyLock<[[f32; 256]; 2]> = LazyLock::new(|| {
     };
     [std::array::from_fn(|code| code as f32 / 255.0), std::array::from_fn(srgb)]
 });
-
-/// The integer cell of a coordinate, kept away from the ends of `i32`. (`floor` is a library call without SSE 4.1.)
-#[inline]
-pub(crate) fn to_cell(x: f32) -> i32 {
-    let towards_zero = x.clamp(-1e9, 1e9) as i32;
-    towards_zero - i32::from(towards_zero as f32 > x)
-}
-
-#[inline]
-pub(super) fn wrapped(i: i32, size: u32, wrap: Wrap) -> u32 {
-    if (i as u32) < size { i as u32 } else { wrapped_around(i, size, wrap) }
-}
-
-/// Rare: out of line.
-#[cold]
-fn wrapped_around(i: i32, size: u32, wrap: Wrap) -> u32 {
-    let n = size as i32;
-    (match wrap {
-        Wrap::Repeat => i.rem_euclid(n),
-        Wrap::Clamp => i.clamp(0, n - 1),
-        Wrap::Mirror => {
-            let tile = i.div_euclid(n);
-            let within = i.rem_euclid(n);
-            if tile % 2 == 0 { within } else { n - 1 - within }
-        }
-    }) as u32
-}
 
 /// One texel, linear; grey images give equal channels, alpha is ignored.
 #[inline]
@@ -62,11 +36,12 @@ pub(crate) fn prefetch_texel(image: &Image, x: u32, y: u32) {
     }
 }
 
-/// Between four texels, of two columns and two rows, which must be inside the image: bilinear, by the fractions `t`.
+/// Between four texels, which must be inside the image.
 #[inline]
-pub(crate) fn bilinear(image: &Image, srgb: bool, [x0, x1]: [u32; 2], [y0, y1]: [u32; 2], t: Vec2) -> Rgb {
-    let (x0, x1) = (x0 as usize, x1 as usize);
-    let (row0, row1) = (y0 as usize * image.width as usize, y1 as usize * image.width as usize);
+pub(crate) fn bilinear(image: &Image, srgb: bool, cells: &Cells) -> Rgb {
+    let Cells { columns, rows, t } = cells;
+    let [x0, x1] = columns.map(|x| x as usize);
+    let [row0, row1] = rows.map(|y| y as usize * image.width as usize);
     let [a, b, c, d] = match &image.pixels {
         Pixels::U8 { channels, data } => {
             let table = &DECODED[usize::from(srgb)];
@@ -82,11 +57,10 @@ pub(crate) fn bilinear(image: &Image, srgb: bool, [x0, x1]: [u32; 2], [y0, y1]: 
 #[inline(always)]
 fn decoded(data: &[u8], channels: u8, table: &[f32; 256], at: usize) -> Rgb {
     let at = at * usize::from(channels);
-    if channels < 3 {
-        return Rgb::splat(table[usize::from(data[at])]);
-    }
-    let codes = &data[at..at + 3];
-    Rgb::new(table[usize::from(codes[0])], table[usize::from(codes[1])], table[usize::from(codes[2])])
+    // without a branch on what differs from image to image
+    let colored = usize::from(channels >= 3);
+    let codes = [data[at], data[at + colored], data[at + 2 * colored]];
+    Rgb::from_array(codes.map(|code| table[usize::from(code)]))
 }
 
 #[inline(always)]

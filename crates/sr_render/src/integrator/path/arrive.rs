@@ -6,7 +6,7 @@ use sr_scene::Rgb;
 
 use super::super::PathSample;
 use super::Step;
-use super::state::{List, Paths, Vertices};
+use super::state::{Paths, Vertices};
 use crate::scene::Scene;
 
 /// Ends the paths whose rays hit nothing, and adds the environment's light to them.
@@ -84,30 +84,24 @@ pub(super) fn find_models<Q: Sequence>(scene: &Scene, paths: &Paths<Q>, at: &mut
     for i in 0..count {
         facing[i] = -at.surfaces.ns.get(i).dot(paths.rays.direction.get(i));
     }
-    let (mut turn, mut pictures) = ([1.0; BATCH], List::EMPTY);
+    let mut turn = [1.0; BATCH];
     at.queues.clear();
+    at.lookups.clear();
     for i in 0..count {
         let material = scene.material_of(ShapeId(at.hits.shape[i]));
         let face = scene.materials.face(material, facing[i] < 0.0);
         at.queues.push(i, &face);
         at.albedo.set(i, face.albedo);
         turn[i] = face.turn;
-        pictures.push_if(face.has_picture, i);
+        if face.has_picture {
+            let point = scene.texture_point(&paths.rays.get(i), &at.hits.at(i), paths.cone(i));
+            at.lookups.push(i, face.side, &point);
+        }
     }
     at.queues.sort(count, scene.materials.queue_count());
     for i in 0..count {
         at.normal.set(i, at.surfaces.ns.get(i) * turn[i]);
     }
-    let count = pictures.len().min(BATCH);
-    for k in 0..count {
-        let i = pictures.get(k);
-        let point = scene.texture_point(&paths.rays.get(i), &at.hits.at(i), paths.cone(i));
-        scene.materials.side(at.queues.side(i)).prefetch(&point, &scene.textures);
-        at.points[k] = point;
-    }
-    for k in 0..count {
-        let i = pictures.get(k);
-        let side = scene.materials.side(at.queues.side(i));
-        at.albedo.set(i, side.reflectance(&at.points[k], &scene.textures));
-    }
+    let albedo = &mut at.albedo;
+    at.lookups.carry_out(scene, |i, _, value| albedo.set(i, value.max(Rgb::ZERO)));
 }

@@ -7,7 +7,8 @@ use sr_scene::Rgb;
 
 use super::Step;
 use super::state::{Scattered, Towards};
-use crate::material::{COLORS, Inputs, Recipe, RecipeUser, SCALARS};
+use crate::material::{COLORS, Input, Inputs, Recipe, RecipeUser, SCALARS};
+use crate::texture::luminance;
 use crate::vertex::Sight;
 
 /// Paths that the widest vector instructions serve at a time.
@@ -69,6 +70,16 @@ impl Bin {
             all[k] = scalar;
         }
         self.opacity[k] = *opacity;
+    }
+
+    /// One of them, which a texture has.
+    #[inline(always)]
+    pub fn set_input(&mut self, k: usize, input: Input, value: Rgb) {
+        match input {
+            Input::Color(i) => self.colors[i as usize % COLORS].set(k, value.max(Rgb::ZERO)),
+            Input::Scalar(i) => self.scalars[i as usize % SCALARS][k] = luminance(value),
+            Input::Opacity => self.opacity[k] = luminance(value),
+        }
     }
 
     #[inline(always)]

@@ -13,6 +13,7 @@ mod arrive;
 mod bin;
 mod direct;
 mod go_on;
+mod lookups;
 mod queues;
 mod scatter;
 mod state;

@@ -85,19 +85,15 @@ fn serve<Q: Sequence>(
     if bin.count == 0 {
         return;
     }
+    at.lookups.clear();
     for k in 0..bin.count {
         let i = queues.get(first + k);
         let side = scene.materials.side(queues.side(i));
-        if side.is_textured {
+        bin.set_inputs(k, &side.constant);
+        if !side.textured.is_empty() {
             let point = scene.texture_point(&paths.rays.get(i), &at.hits.at(i), paths.cone(i));
-            side.prefetch(&point, &scene.textures);
-            at.points[k] = point;
+            at.lookups.push(k, queues.side(i), &point);
         }
-    }
-    for k in 0..bin.count {
-        let i = queues.get(first + k);
-        let side = scene.materials.side(queues.side(i));
-        bin.set_inputs(k, &side.inputs(&at.points[k], &scene.textures));
         bin.normal.set(k, at.normal.get(i));
         bin.wo.set(k, -paths.rays.direction.get(i));
         bin.light.set(k, at.lights.wi.get(i));
@@ -107,6 +103,7 @@ fn serve<Q: Sequence>(
             bin.delta.set(k, at.deltas.wi.get(i));
         }
     }
+    at.lookups.carry_out(scene, |k, input, value| bin.set_input(k, input, value));
     scene.materials.with_recipe(kind, Serve { bin, step, has_deltas });
     for k in 0..bin.count {
         let i = queues.get(first + k);

@@ -8,9 +8,10 @@ use sr_scene::Rgb;
 
 use super::super::CameraRays;
 use super::bin::Bin;
+use super::lookups::Lookups;
 use super::queues::Queues;
 use crate::light::{DeltaSamples, LightSamples};
-use crate::texture::{RayCone, TexturePoint};
+use crate::texture::RayCone;
 
 /// Paths on their way. They lie close together; one that ends makes room for the last one.
 pub(super) struct Paths<Q> {
@@ -130,8 +131,8 @@ pub(super) struct Vertices {
     pub normal: Vec3s,
     /// Albedos of Lambertian surfaces.
     pub albedo: Vec3s,
-    /// Where textures are looked up.
-    pub points: [TexturePoint; BATCH],
+    /// Those at which textures are looked up.
+    pub lookups: Lookups,
     /// Which loop serves which vertex.
     pub queues: Queues,
     /// Those of one kind, side by side.
@@ -153,7 +154,7 @@ impl Vertices {
         surfaces: Surfaces::NONE,
         normal: Vec3s::splat(Vec3::Z),
         albedo: Vec3s::splat(Rgb::ZERO),
-        points: [TexturePoint::ORIGIN; BATCH],
+        lookups: Lookups::NONE,
         queues: Queues::EMPTY,
         bin: Bin::NONE,
         lights: LightSamples::NONE,
